@@ -18,7 +18,7 @@ namespace {
 /// The number of rows searched between two reports of the progress; Ctrl-C takes effect there.
 constexpr Eigen::Index kRowsPerSearch = Eigen::Index{1} << 15;
 
-/// SearchRows of three numbers, read in place where they are an array of float64. They are checked
+/// Rows of three numbers, read in place where they are an array of float64. They are checked
 /// all together before searches, so that errors name rows of the call, and in parts again, since
 /// other threads of Python may write to the array meanwhile.
 class SearchRows {

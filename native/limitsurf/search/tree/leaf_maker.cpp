@@ -34,7 +34,7 @@ LeafMaker::Leaf LeafMaker::ofPatch(const SurfacePiece& piece, const BezierPatch&
 LeafMaker::Leaf LeafMaker::ofCore(const SurfacePiece& core,
                                   SurfacePatches::SplitCore& split) const {
   // The box is found from the patches of one more step and the hull of the rest.
-  patches_.split(core, split);
+  patches_.splitPatches(core, split);
   BoxPoints points(middle_);
   points.reserve(3 * 16 + 8);
   for (const BezierPatch& patch : split.patches) {
@@ -56,7 +56,7 @@ LeafMaker::Leaf LeafMaker::ofRing(int ring) const {
   InterruptionStride stride;
   for (int place = 0; place < rings_.coreCount(ring); ++place) {
     stride.step();
-    patches_.split(rings_.core(ring, place, first), split);
+    patches_.splitPatches(rings_.core(ring, place, first), split);
     for (const BezierPatch& patch : split.patches) {
       points.add(patch);
     }
@@ -77,49 +77,41 @@ int LeafMaker::stepsBefore(const SurfacePiece& core) const {
   return std::abs(on.us + on.ut) == 1 ? 2 : 1;
 }
 
-template <typename Add, typename AddRest>
-void LeafMaker::forEachPatch(const SurfacePiece& piece, const Add& add,
-                             const AddRest& addRest) const {
-  if (!piece.isCore()) {
-    add(patches_.patch(piece));
-    return;
-  }
-  const bool is_of_ring = isOfRing(piece);
-  const int steps = is_of_ring ? stepsBefore(piece) : 1;
-  SurfacePiece rest = piece;
-  SurfacePatches::SplitCore split;
-  for (int step = 0; step < steps; ++step) {
-    patches_.split(rest, split);
-    rest = split.core;
-    for (const BezierPatch& patch : split.patches) {
-      add(patch);
-    }
-  }
-  if (!is_of_ring) {
-    addRest(split);
-  }
-}
-
 Box LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Padded low = Padded::Constant(kInfinity), high = -low;
-  std::vector<Padded> rest;
-  const auto add = [&](const BezierPatch& patch) {
+  const auto include = [&](const Padded& point) {
+    low = low.min(point);
+    high = high.max(point);
+  };
+  const auto includePatch = [&](const BezierPatch& patch) {
     for (const Padded& point : patch.points) {
-      low = low.min(patch.anchor + point);
-      high = high.max(patch.anchor + point);
+      include(patch.anchor + point);
     }
   };
-  const auto addRest = [&](const SurfacePatches::SplitCore& split) {
-    rest.clear();
-    patches_.appendRestPoints(split, rest);
-    for (const Padded& point : rest) {
-      low = low.min(point);
-      high = high.max(point);
-    }
-  };
+  SurfacePatches::SplitCore split;
+  std::vector<Padded> rest_points;
   for (const SurfacePiece& piece : pieces) {
-    forEachPatch(piece, add, addRest);
+    if (!piece.isCore()) {
+      includePatch(patches_.patch(piece));
+      continue;
+    }
+    const bool is_of_ring = isOfRing(piece);
+    SurfacePiece rest = piece;
+    for (int step = is_of_ring ? stepsBefore(piece) : 1; step > 0; --step) {
+      patches_.splitPatches(rest, split);
+      rest = split.core;
+      for (const BezierPatch& patch : split.patches) {
+        includePatch(patch);
+      }
+    }
+    if (!is_of_ring) {
+      rest_points.clear();
+      patches_.appendRestPoints(split, rest_points);
+      for (const Padded& point : rest_points) {
+        include(point);
+      }
+    }
   }
   return {low.head<3>().matrix() - middle_, high.head<3>().matrix() - middle_};
 }

@@ -36,11 +36,6 @@ class LeafMaker {
   Box boxAround(const std::vector<SurfacePiece>& pieces) const;
 
  private:
-  /// Calls add(patch) for the first patches of a piece, and addRest(split) for what is left of a
-  /// core unless it is of a whole ring.
-  template <typename Add, typename AddRest>
-  void forEachPatch(const SurfacePiece& piece, const Add& add, const AddRest& addRest) const;
-
   const SurfacePatches& patches_;
   const SearchRings& rings_;
   const Vector3 middle_;

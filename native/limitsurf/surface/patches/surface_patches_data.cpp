@@ -39,6 +39,7 @@ constexpr double kLeastSine = 1e-6;
 /// The rounding of the coordinates of a point in a frame, of its largest coordinate: three products
 /// and two sums, each of at most sqrt(3) times that.
 constexpr double kTurnRounding = 9 * 0x1p-53;
+
 /// The quarters of a core in the order of SplitCore.
 constexpr int kQuarters[3][2] = {{1, 0}, {1, 1}, {0, 1}};
 
