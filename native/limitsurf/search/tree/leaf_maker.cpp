@@ -21,6 +21,13 @@ Vector3 sideT(const BezierPatch& patch) {
   return ((p[12] - p[0]) + (p[15] - p[3])).head<3>();
 }
 
+/// The area of the quadrilateral between the corners, if it is flat.
+double cornerArea(const BezierPatch& patch) {
+  const BezierPatch::Point* p = patch.points;
+  const Vector3 one = (p[15] - p[0]).head<3>(), other = (p[12] - p[3]).head<3>();
+  return 0.5 * one.cross(other).norm();
+}
+
 }  // namespace
 
 LeafMaker::Leaf LeafMaker::ofPatch(const SurfacePiece& piece, const BezierPatch& patch) const {
@@ -77,9 +84,10 @@ int LeafMaker::stepsBefore(const SurfacePiece& core) const {
   return std::abs(on.us + on.ut) == 1 ? 2 : 1;
 }
 
-Box LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
+LeafMaker::BoxedArea LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Padded low = Padded::Constant(kInfinity), high = -low;
+  double area = 0;
   const auto include = [&](const Padded& point) {
     low = low.min(point);
     high = high.max(point);
@@ -88,6 +96,7 @@ Box LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
     for (const Padded& point : patch.points) {
       include(patch.anchor + point);
     }
+    area += cornerArea(patch);
   };
   SurfacePatches::SplitCore split;
   std::vector<Padded> rest_points;
@@ -113,7 +122,7 @@ Box LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
       }
     }
   }
-  return {low.head<3>().matrix() - middle_, high.head<3>().matrix() - middle_};
+  return {{low.head<3>().matrix() - middle_, high.head<3>().matrix() - middle_}, area};
 }
 
 }  // namespace limitsurf

@@ -31,9 +31,13 @@ class LeafMaker {
   /// The number of steps that a core is split before searches, so that its box fits closely.
   int stepsBefore(const SurfacePiece& core) const;
 
+  struct BoxedArea {
+    Box box;
+    double area = 0;  ///< of what is in the box, roughly
+  };
   /// A box around the leaves of some pieces of a face, but for those leaves that are of whole
   /// rings. It is empty if there are no others.
-  Box boxAround(const std::vector<SurfacePiece>& pieces) const;
+  BoxedArea boxAround(const std::vector<SurfacePiece>& pieces) const;
 
  private:
   const SurfacePatches& patches_;

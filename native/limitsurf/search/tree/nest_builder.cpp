@@ -6,17 +6,19 @@
 
 namespace limitsurf {
 
-BuiltPart NestBuilder::build(const std::vector<SurfacePiece>& pieces) const {
-  std::vector<LeafMaker::Leaf> leaves;
-  std::vector<BezierPatch> patches;
+NestBuilder::Leaves NestBuilder::leaves(const std::vector<SurfacePiece>& pieces) const {
+  Leaves made;
   const std::size_t count = leafCount(pieces);
-  leaves.reserve(count);
-  patches.reserve(count);
+  made.leaves.reserve(count);
+  made.patches.reserve(count);
   SurfacePatches::SplitCore split;
+  const auto addPatch = [&](const SurfacePiece& piece, const BezierPatch& patch) {
+    made.patches.push_back(patch);
+    made.leaves.push_back(maker_.ofPatch(piece, patch));
+  };
   for (const SurfacePiece& piece : pieces) {
     if (!piece.isCore()) {
-      patches.push_back(patches_.patch(piece));
-      leaves.push_back(maker_.ofPatch(piece, patches.back()));
+      addPatch(piece, patches_.patch(piece));
       continue;
     }
     SurfacePiece rest = piece;
@@ -24,15 +26,19 @@ BuiltPart NestBuilder::build(const std::vector<SurfacePiece>& pieces) const {
       patches_.split(rest, split);
       rest = split.core;
       for (int quarter = 0; quarter < 3; ++quarter) {
-        patches.push_back(split.patches[quarter]);
-        leaves.push_back(maker_.ofPatch(split.pieces[quarter], patches.back()));
+        addPatch(split.pieces[quarter], split.patches[quarter]);
       }
     }
     if (!maker_.isOfRing(piece)) {
-      patches.emplace_back();
-      leaves.push_back(maker_.ofCore(rest, split));
+      made.patches.emplace_back();
+      made.leaves.push_back(maker_.ofCore(rest, split));
     }
   }
+  return made;
+}
+
+BuiltPart NestBuilder::build(const std::vector<SurfacePiece>& pieces) const {
+  const auto [leaves, patches] = this->leaves(pieces);
   std::vector<BoxF> boxes;
   boxes.reserve(leaves.size());
   for (const LeafMaker::Leaf& leaf : leaves) {

@@ -130,6 +130,13 @@ TEST(SearchTree, AFewSearchesMakeFewNests) {
   EXPECT_GT(tree.nestCount(), 5000);
 }
 
+/// The boxes of long and thin faces overlap: a search near a pole would enter most of their nests.
+TEST(SearchTree, LongThinFacesAreNoNests) {
+  const LimitSurface thin = limitSurface(pole(500)), usual = limitSurface(pole(12));
+  EXPECT_EQ(SearchTree(thin, 1).nestCount(), 0);
+  EXPECT_EQ(SearchTree(usual, 1).nestCount(), usual.faceCount());
+}
+
 /// After as many searches as there are nests, no search has to make one.
 TEST(SearchTree, ManySearchesMakeAllNests) {
   const LimitSurface surface = limitSurface(sheetOfTriangles());
