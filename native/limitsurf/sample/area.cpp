@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/parallel.h"
@@ -222,21 +224,35 @@ SurfaceArea sumOf(const std::vector<SurfaceArea>& areas) {
 }
 
 /// The tiles with the largest errors, as few as possible, without which the errors' sum is at most
-/// `error`.
+/// `error`. Takes O(tiles) time.
 std::vector<std::size_t> worstTiles(const std::vector<SurfaceArea>& areas, double error) {
-  std::vector<std::size_t> order(areas.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return areas[a].error < areas[b].error; });
-  std::size_t good = 0;
-  for (double sum = 0; good < order.size(); ++good) {
-    sum += areas[order[good]].error;
-    if (!(sum <= error)) {
-      break;
+  using Tile = std::pair<double, std::size_t>;  // its error and its number
+  std::vector<Tile> tiles(areas.size());
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    tiles[i] = {areas[i].error, i};
+  }
+  // The first tile that is too much lies between these. Those before have errors of this sum.
+  auto begin = tiles.begin(), end = tiles.end();
+  double sum = 0;
+  while (begin != end) {
+    const auto middle = begin + (end - begin) / 2;
+    std::nth_element(begin, middle, end);
+    const double sum_to_middle =
+        std::accumulate(begin, middle + 1, sum,
+                        [](double before, const Tile& tile) { return before + tile.first; });
+    if (sum_to_middle <= error) {
+      begin = middle + 1;
+      sum = sum_to_middle;
+    } else {
+      end = middle;
     }
   }
-  order.erase(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(good));
-  return order;
+  std::vector<std::size_t> worst;
+  worst.reserve(static_cast<std::size_t>(tiles.end() - begin));
+  std::transform(begin, tiles.end(), std::back_inserter(worst),
+                 [](const Tile& tile) { return tile.second; });
+  std::sort(worst.begin(), worst.end());
+  return worst;
 }
 
 }  // namespace
