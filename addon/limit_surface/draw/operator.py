@@ -50,8 +50,8 @@ class VIEW3D_OT_limit_draw(
     )
     steadying: IntProperty(
         name="Steady",
-        description="Number of smoothing steps for new strokes. 8 of them remove the steps that "
-        "come from the pixels of the screen",
+        description="Number of times that new strokes are smoothed. 8 times are enough to remove "
+        "the unevenness that comes from the pixels of the screen",
         default=8,
         min=0,
         max=200,

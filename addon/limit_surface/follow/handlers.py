@@ -87,8 +87,8 @@ def attach_handlers() -> None:
         ids.LIVE,
         BoolProperty(
             name="Live Following",
-            description="Let this extension move everything that follows a limit surface live. "
-            "While this is off, these things stay where they are",
+            description="Let this extension move the things that follow a limit surface in the "
+            "mode Live. While this is off, they stay where they are",
             default=True,
             update=_switched,
         ),

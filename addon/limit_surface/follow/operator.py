@@ -59,8 +59,8 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         name="Fast Viewport",
         description="Make playback faster: in the viewport nodes read a hidden copy of the "
         "surface, so that the graphics card can subdivide the surface itself. "
-        "Use it if a Subdivision Surface modifier of level 3 or more is the last "
-        "one. Run this operator again after you change the surface's modifiers",
+        "Use it if the last modifier is a Subdivision Surface modifier of level 3 or "
+        "more. Run this operator again after you change the surface's modifiers",
         default=False,
     )
 

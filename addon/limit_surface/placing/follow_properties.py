@@ -60,7 +60,7 @@ class FollowSnappedProperties:
     follow: EnumProperty(
         name="Follow",
         description="How snapped hair follows the surface when its mesh deforms. Hair that "
-        "follows already goes on to follow in the same way",
+        "already follows continues to follow in the same way",
         items=(_AUTO, _NODES, _LIVE, _NONE),
         default="AUTO",
     )

@@ -80,7 +80,7 @@ class ProjectionProperties(TextureProperties, FollowProperties):
     )
     mode: EnumProperty(
         name="Result",
-        description="What is made of the projected image",
+        description="What the operator makes from the projected image",
         items=(
             ("TEXTURE", "Texture", "Paint it into an image, by a UV map", "", 0),
             ("DECAL", "Decal", "Make a new mesh that lies on the surface and has a UV map", "", 1),
@@ -89,7 +89,7 @@ class ProjectionProperties(TextureProperties, FollowProperties):
     )
     output: EnumProperty(
         name="Paint Into",
-        description="Which image is painted into",
+        description="Image into which the projection is painted",
         items=(
             (
                 "NEW",

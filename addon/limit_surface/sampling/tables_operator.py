@@ -26,9 +26,9 @@ class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
 
     depth: IntProperty(
         name="Depth",
-        description="How close to irregular vertices, such as poles, places are exact: down to "
-        "2^-Depth of a face. A place that is closer to such a vertex is moved away from it, to "
-        "that distance. A larger depth makes larger tables",
+        description="How close to irregular vertices, such as poles, the node gives exact "
+        "results: down to a distance of 2^-Depth of a face. A place that is closer to such a "
+        "vertex is moved away from it, to that distance. A larger depth makes larger tables",
         default=16,
         min=1,
         max=24,

@@ -52,8 +52,9 @@ class FlowProperties:
             (
                 "CURVATURE_1",
                 "Larger Curvature",
-                "Use the principal direction of the larger curvature, which runs along a limb. Of "
-                "the two opposite directions, the one that points downwards is used",
+                "Use the principal direction of the larger curvature, which runs along a limb, "
+                "because bulges have negative curvature. Of the two opposite directions, the one "
+                "that points downwards is used",
                 "SPHERECURVE",
                 4,
             ),
