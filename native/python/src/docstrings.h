@@ -259,7 +259,7 @@ constexpr const char* kDataBoundsDoc =
 square, borders included; rows count along v, columns along u. For varying data and for linear
 interpolation they are exact but for a padding of 1.25e-13 of the diagonal of the values' bounding box.
 For smooth data they are the bounds of Bezier control points: wider than the values by an amount that
-shrinks with the square of side. NaN on faces that have no surface.
+falls in proportion to 1 / side^2. NaN on faces that have no surface.
 
 side is 1 to 1024. Raises ValueError for another one. Cost: O(f side^2 d), about 0.3 microseconds for
 three columns of a square.
