@@ -58,7 +58,7 @@ SurfacePatches::Data::Data(const TileTable& tile_table, const Pose& control_poin
   }
   unit = 1 / scaleToOwnUnit(diagonal);
   scale = patch_unit == PatchUnit::own ? 1 / unit : 1;
-  tiles.reserve(table.faces.size());
+  tiles.reserve(table.bsplines.size() + table.ring_tiles.size());
   InterruptionStride stride;
   for (std::size_t face = 0; face < table.faces.size(); ++face) {
     stride.step();

@@ -57,7 +57,7 @@ struct SurfacePatches::Data {
 
   const TileTable& table;
   const Pose& pose;
-  std::vector<Tile> tiles;
+  LargePageVector<Tile> tiles;
   /// The extent of a ring's points along the axes of its frame, in `unit`.
   struct Extent {
     float low[3], high[3];
