@@ -3,16 +3,16 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <exception>
+#include <optional>
 
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/loop_order.h"
 #include "limitsurf/thread_count.h"
+#include "limitsurf/worker_interruption.h"
 #include "limitsurf/worker_threads.h"
 
 namespace limitsurf {
@@ -21,15 +21,15 @@ namespace limitsurf {
 /// evaluation: long enough (some 50 microseconds) that starting a task costs little.
 constexpr std::size_t kRowsPerTask = 512;
 
-/// Ends a loop within a task of another loop that has already ended with an exception. TBB drops it
-/// in favour of that one.
-struct OuterLoopEnded : std::exception {};
-
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or on at
-/// most `threads` of them. All ranges but the last have `grain` elements; InterruptionPoint::pass()
-/// is called after each one that the calling thread has worked on. What a body does must not depend
-/// on how the range is divided. It may call parallelFor(): if an exception ends the outer loop, the
-/// inner ones end after their present ranges.
+/// most `threads` of them. All ranges but the last have `grain` elements. What a body does must not
+/// depend on how the range is divided. It may call parallelFor(): if an exception ends the outer
+/// loop, the inner ones end after their present ranges.
+///
+/// InterruptionPoint::pass() is called after each range. On the calling thread it calls the
+/// caller's interruption point. On others it ends the range if the loop has ended, and a body that
+/// calls it during a long range has the caller hear of interruptions all the same
+/// (WorkerInterruption).
 ///
 /// Each thread works through a part of [0, count) from its beginning on, and one that has nothing
 /// left takes over the second half of what another has before it. So threads wait for each other
@@ -40,10 +40,8 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
   const auto callFor = [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       body(i * grain, std::min(count, (i + 1) * grain));
-      InterruptionPoint::pass();  // it belongs to the calling thread
-      if (tbb::is_current_task_group_canceling()) {
-        throw OuterLoopEnded();
-      }
+      InterruptionPoint::pass();
+      endWithLoop();
     }
   };
   const std::size_t ranges = count / grain + (count % grain > 0 ? 1 : 0);
@@ -53,11 +51,16 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
   }
   {
     LoopOrder order;
+    const bool is_interruptible = InterruptionPoint::any();
     const auto run = [&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, ranges),
           [&](const tbb::blocked_range<std::size_t>& some) {
             const LoopOrder::Task task(order);
+            std::optional<WorkerInterruption> interruption;
+            if (is_interruptible && !InterruptionPoint::any()) {
+              interruption.emplace();
+            }
             callFor(some.begin(), some.end());
           },
           tbb::simple_partitioner());

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -82,6 +83,64 @@ TEST(ParallelFor, WhatTheInterruptionPointThrowsEndsTheLoop) {
                              }),
                  std::runtime_error);
     EXPECT_LT(ranges, 100'000) << threads;
+  }
+}
+
+/// A loop of two ranges: one of a worker thread, which passes interruption points for as long as
+/// nothing ends it, and a short one of the caller. Returns whether the long one was ended.
+bool endsLongRange(int threads, const std::function<void()>& on_caller) {
+  constexpr std::chrono::seconds kLimit{60};
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<bool> begun{false}, was_ended{false};
+  const auto isLate = [end = std::chrono::steady_clock::now() + kLimit] {
+    return std::chrono::steady_clock::now() > end;
+  };
+  EXPECT_THROW(parallelFor(2, 1, threads,
+                           [&](std::size_t, std::size_t) {
+                             if (std::this_thread::get_id() == caller) {
+                               while (!begun && !isLate()) {
+                                 std::this_thread::yield();
+                               }
+                               on_caller();
+                               return;
+                             }
+                             begun = true;
+                             try {
+                               while (!isLate()) {
+                                 InterruptionPoint::pass();
+                               }
+                             } catch (...) {
+                               was_ended = true;
+                               throw;
+                             }
+                           }),
+               std::runtime_error);
+  return was_ended;
+}
+
+TEST(ParallelFor, AnExceptionOfTheCallerEndsALongRangeOfAnotherThread) {
+  if (tbb::this_task_arena::max_concurrency() < 2) {
+    GTEST_SKIP() << "one core";
+  }
+  const InterruptionPoint point([] {});
+  for (const int threads : {0, 2}) {
+    EXPECT_TRUE(endsLongRange(threads, [] { throw std::runtime_error("enough"); })) << threads;
+  }
+}
+
+/// The caller has nothing left to do but to wait for the other thread.
+TEST(ParallelFor, AnInterruptionPointIsPassedWhileTheCallerWaits) {
+  if (tbb::this_task_arena::max_concurrency() < 2) {
+    GTEST_SKIP() << "one core";
+  }
+  for (const int threads : {0, 2}) {
+    int calls = 0;
+    const InterruptionPoint point([&] {
+      if (++calls > 3) {
+        throw std::runtime_error("enough");
+      }
+    });
+    EXPECT_TRUE(endsLongRange(threads, [] {})) << threads;
   }
 }
 

@@ -2,20 +2,102 @@
 #include "limitsurf/search/rays/hit_merging.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <unordered_map>
+
+#include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
 namespace {
 
-/// Whether the faces have a vertex in common. Sheets that merely lie on each other have none.
-bool areNeighbours(const LimitSurface& surface, int face, int other) {
-  const std::vector<int>& base = surface.baseFace();
-  if (base[face] == base[other]) {
-    return true;
+/// The hits that are kept, in the order of their distances.
+class MergedHits {
+ public:
+  MergedHits(const LimitSurface& surface, double tolerance, double longest_slack)
+      : surface_(surface), tolerance_(tolerance), reach_(2 * longest_slack) {}
+
+  /// Keeps a hit unless a neighbouring face has the same one.
+  void add(const RayHit& hit) {
+    if (!isKnown(hit)) {
+      kept_.push_back(hit);
+    }
   }
-  const Span<int> a = surface.mesh().faceVertices(base[face]),
-                  b = surface.mesh().faceVertices(base[other]);
-  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
-}
+  std::vector<RayHit>& hits() { return kept_; }
+
+ private:
+  /// So many hits are compared with one by one. If there are more within reach, as in a stack of
+  /// sheets, those on neighbouring faces are looked up by the vertices of faces with few of them.
+  static constexpr std::size_t kFewHits = 16, kFewVertices = 8;
+
+  bool isKnown(const RayHit& hit) {
+    std::size_t place = kept_.size();
+    for (std::size_t few = kFewHits; place > 0 && isWithinReach(kept_[place - 1], hit); --few) {
+      if (few == 0 && vertices(hit.at.face).size() <= kFewVertices) {
+        return isKnownNearby(hit);
+      }
+      --place;
+      if (isSame(kept_[place], hit)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool isKnownNearby(const RayHit& hit) {
+    for (; listed_ < kept_.size(); ++listed_) {
+      const Span<int> at = vertices(kept_[listed_].at.face);
+      if (at.size() > kFewVertices) {
+        on_large_faces_.push_back(listed_);
+        continue;
+      }
+      for (const int vertex : at) {
+        at_vertex_[vertex].push_back(listed_);
+      }
+    }
+    const Span<int> at = vertices(hit.at.face);
+    return isKnownAmong(on_large_faces_, hit) ||
+           std::any_of(at.begin(), at.end(),
+                       [&](int vertex) { return isKnownAmong(at_vertex_[vertex], hit); });
+  }
+
+  bool isKnownAmong(const std::vector<std::size_t>& places, const RayHit& hit) const {
+    for (auto place = places.rbegin();
+         place != places.rend() && isWithinReach(kept_[*place], hit); ++place) {
+      if (isSame(kept_[*place], hit)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool isWithinReach(const RayHit& before, const RayHit& hit) const {
+    return hit.distance - before.distance <= reach_;
+  }
+  bool isSame(const RayHit& a, const RayHit& b) const {
+    return (a.position - b.position).norm() <= a.slack(tolerance_) + b.slack(tolerance_) &&
+           areNeighbours(a.at.face, b.at.face);
+  }
+
+  Span<int> vertices(int face) const {
+    return surface_.mesh().faceVertices(surface_.baseFace()[face]);
+  }
+  /// Whether the faces have a vertex in common. Sheets that merely lie on each other have none.
+  bool areNeighbours(int face, int other) const {
+    const std::vector<int>& base = surface_.baseFace();
+    if (base[face] == base[other]) {
+      return true;
+    }
+    const Span<int> a = vertices(face), b = vertices(other);
+    return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+  }
+
+  const LimitSurface& surface_;
+  const double tolerance_, reach_;
+  std::vector<RayHit> kept_;
+  std::size_t listed_ = 0;  // so many of them are in these lists
+  std::unordered_map<int, std::vector<std::size_t>> at_vertex_;
+  std::vector<std::size_t> on_large_faces_;
+};
 
 }  // namespace
 
@@ -26,21 +108,13 @@ void mergeHits(const LimitSurface& surface, double tolerance, std::vector<RayHit
   for (const RayHit& hit : hits) {
     longest = std::max(longest, hit.slack(tolerance));
   }
-  std::vector<RayHit> merged;
+  MergedHits merged(surface, tolerance, longest);
+  InterruptionStride stride;
   for (const RayHit& hit : hits) {
-    bool known = false;
-    for (auto other = merged.rbegin();
-         !known && other != merged.rend() && hit.distance - other->distance <= 2 * longest;
-         ++other) {
-      known = (hit.position - other->position).norm() <=
-                  hit.slack(tolerance) + other->slack(tolerance) &&
-              areNeighbours(surface, hit.at.face, other->at.face);
-    }
-    if (!known) {
-      merged.push_back(hit);
-    }
+    stride.step();
+    merged.add(hit);
   }
-  hits.swap(merged);
+  hits.swap(merged.hits());
 }
 
 }  // namespace limitsurf

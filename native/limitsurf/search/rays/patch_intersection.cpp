@@ -52,6 +52,7 @@ class PatchIntersection {
 
   /// Searches a cell.
   void visit(const Cell& cell) {
+    ++out_.cells;
     const RayLimits limits{out_.from - out_.tolerance, out_.nearest, out_.margin(), out_.tolerance};
     switch (seen_.meet(cell.x, cell.y, cell.z, limits)) {
       case RayMeeting::none:

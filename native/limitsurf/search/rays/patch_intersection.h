@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "limitsurf/search/rays/patch_in_ray_frame.h"
@@ -47,6 +48,7 @@ struct CollectedHits {
   /// and less than the tolerance: points between the two are hits if the search comes upon them.
   double margin() const { return (tolerance - rounding) / 32 + rounding; }
   std::vector<RayHit> hits;
+  std::int64_t cells = 0;  ///< the number of parts of patches that were looked at
 
   void add(const RayHit& hit);
 };

@@ -55,6 +55,10 @@ class RaySearch {
 
   /// Visits a node, the box of a leaf, or a leaf. Returns false when there is nothing left to do.
   bool step() {
+    if (found_.cells >= next_pass_) {
+      InterruptionPoint::pass();
+      next_pass_ = found_.cells + kCellsPerPass;
+    }
     const TreePart& part = data_.part(next_);
     if (!WideTree::isLeaf(next_.place)) {
       const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next_.place)];
@@ -102,6 +106,10 @@ class RaySearch {
 
   /// Hits so many tolerances apart count as one: they are less than kSearchError apart.
   static constexpr double kSameHit = 4;
+
+  /// A ray looks at a few parts of patches, or at millions where it runs along many of them. So many
+  /// take about a millisecond.
+  static constexpr std::int64_t kCellsPerPass = 4096;
 
   double margin() const { return found_.tolerance; }
   double start() const { return found_.from - found_.tolerance; }
@@ -245,6 +253,7 @@ class RaySearch {
   NearestFirst::Entry next_{};
   bool box_met_ = false;  // whether the ray meets the box of the leaf that comes next
   CollectedHits found_;
+  std::int64_t next_pass_ = kCellsPerPass;
 };
 
 /// Rays that are searched for at once, step by step in turns. More do not hide more latency.
