@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area_sampler_data.h"
 #include "limitsurf/sample/blue_noise/crowding.h"
@@ -182,7 +183,9 @@ class BlueNoiseMaker {
   /// Estimates the integral of the density over the surface.
   void setWeighedArea() {
     weighed_area_ = 0;
+    InterruptionStride stride;
     for (const AreaCell& cell : cells_) {
+      stride.step();
       weighed_area_ += cell.area * density_.meanOn(rectangleOf(patches_, cell));
     }
   }

@@ -98,6 +98,7 @@ void CellSplitting::begin(Span<TrialCell> whole, const BoundedPatch& patch,
   patch.findExtents(extents);
   std::vector<TrialCell> parts;
   for (std::size_t i = 0; i < whole.size(); ++i) {
+    stride_.step();
     double smallest;
     if (!surface_.radii.smallestOn([&] { return patch.rectangle(whole[i]); }, smallest)) {
       continue;

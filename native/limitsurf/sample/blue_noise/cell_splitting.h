@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/sample/blue_noise/bounded_patch.h"
 #include "limitsurf/sample/blue_noise/core_descent.h"
 #include "limitsurf/sample/blue_noise/disc_finder.h"
@@ -79,6 +80,7 @@ class CellSplitting {
   SurfacePiece piece_;
   std::optional<BoundedPatch> patch_;
   std::optional<CoreDescent> descent_;  // of the present core, once it is needed
+  InterruptionStride stride_;
 };
 
 }  // namespace limitsurf

@@ -10,6 +10,7 @@ namespace limitsurf {
 
 void CellTrials::make(Span<TrialCell> cells, Outcome& out) {
   for (std::size_t begin = 0, end; begin < cells.size(); begin = end) {
+    stride_.step();
     end = begin + 1;
     if (cells[begin].piece.isCore()) {
       makeInCore(cells[begin], out);

@@ -58,6 +58,7 @@ class CellTrials {
   NoiseSurface& surface_;
   CellSplitting splitting_;
   std::uint64_t key_;
+  InterruptionStride stride_;
 };
 
 }  // namespace limitsurf

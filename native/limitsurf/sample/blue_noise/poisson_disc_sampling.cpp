@@ -133,7 +133,9 @@ void PoissonDiscSampling::decide(Task& task) {
   std::vector<bool> has_won(count, false);
   std::vector<CellSplitting::Hit> hits;
   DiscFinder others(candidates_);
+  InterruptionStride stride;
   for (std::size_t i = 0; i < count; ++i) {
+    stride.step();
     const NoiseDisc& own = candidates_.disc(task.first + i);
     if (!others.near(own.position, own.radius).conflict(own, static_cast<double>(task.first + i))) {
       hits.push_back({&own, &outcome.candidates[i].cell, false});
