@@ -87,11 +87,13 @@ void CageMesh::findSmoothVertices() {
 }
 
 void CageMesh::splitVertices() {
+  InterruptionStride stride;
   for (int vertex = own_points_; vertex < vertex_count_; ++vertex) {
     for (const auto& [face, corner] : topology_.splitFans()[vertex - own_points_].faces) {
       own_corner_vertices_[cornerNumber({face, corner})] = vertex;
     }
     setSplitFan(vertex);
+    stride.step();
   }
 }
 
