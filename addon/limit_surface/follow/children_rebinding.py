@@ -5,7 +5,7 @@ import bpy
 
 from .. import ids
 from ..errors import RefusalError
-from ..placing import followers, live_children
+from ..placing import followers, following, live_children
 
 
 def make_again(context: bpy.types.Context, ob: bpy.types.Object) -> str:
@@ -13,6 +13,7 @@ def make_again(context: bpy.types.Context, ob: bpy.types.Object) -> str:
     and returns a report. Raises RefusalError where that is impossible; they are those of before
     then.
     """
+    following.check_editable(ob)
     guides, settings = live_children.guides_of(ob), live_children.settings_of(ob)
     if guides is None or guides.type != "CURVES":
         raise RefusalError(

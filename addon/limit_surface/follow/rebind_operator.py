@@ -94,8 +94,8 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
             yield from rebinding.compute(context)
         done = [rebinding.write(context) for rebinding in rebindings]
         for rebound in done:
-            if rebound.warning:
-                self.report({"WARNING"}, rebound.warning)
+            for warning in rebound.warnings:
+                self.report({"WARNING"}, warning)
         lines = [str(rebound) for rebound in done]
         for ob in children:
             try:

@@ -8,17 +8,19 @@ import bpy
 from ..errors import RefusalError
 from ..placing import live_children
 from ..placing.followers import (
+    bound_to,
     followers_of,
+    is_own,
     is_placed,
     live_followers_of,
     live_modifier_of,
     modifier_of,
-    own_followers_of,
-    strays_of,
+    own_or_all,
     surface_of,
     was_bound,
 )
 from ..placing.relocation import TYPES
+from ..placing.unbinding import leftovers_of
 from ..reading.users import own_objects_using
 
 BINDABLE = (*TYPES, "CURVE")
@@ -40,8 +42,21 @@ def chosen_followers(context: bpy.types.Context) -> list[bpy.types.Object]:
     if any(live_children.modifier_of(ob) for ob in chosen):
         return found
     if not found and active is not None and active.type == "MESH":
-        found = [*own_followers_of(active), *live_followers_of(active)]
+        found = [ob for ob in _unbound_with(active) if not live_children.modifier_of(ob)]
     return found
+
+
+def _unbound_with(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns what is unbound with a surface on which nothing else is selected. Library overrides
+    are among it only if there is nothing else to be done, so that the refusal names them.
+    """
+    everything = [
+        *followers_of(surface),
+        *live_followers_of(surface),
+        *live_children.on_surface(surface),
+    ]
+    own = [ob for ob in everything if is_own(ob)]
+    return own if own or not everything or leftovers_of(surface) else everything
 
 
 def to_bind(
@@ -55,11 +70,7 @@ def to_bind(
     things = [ob for ob in selected(context) if ob.type in BINDABLE]
     if active is not None and active.type == "MESH" and not is_placed(active):
         things.remove(active)
-        things = things or [
-            *own_followers_of(active),
-            *live_followers_of(active),
-            *strays_of(active),
-        ]
+        things = things or own_or_all(bound_to(active))
         return {active: things} if things else {}
     surfaces = {surface_of(ob) for ob in things}
     found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
@@ -113,8 +124,8 @@ def to_rebind(
         surface = surface_of(ob) if modifier_of(ob) or is_placed(ob) else None
         if surface is not None:
             found.setdefault(surface, []).append(ob)
-        elif ob.type == "MESH" and (followers_of(ob) or live_followers_of(ob) or strays_of(ob)):
-            found.setdefault(ob, [])
+        elif ob.type == "MESH" and (bound := bound_to(ob)):
+            found.setdefault(ob, own_or_all(bound))
     return found
 
 
@@ -140,5 +151,5 @@ def children_to_unbind(context: bpy.types.Context) -> list[bpy.types.Object]:
     active = context.active_object
     follows = any(modifier_of(ob) or live_modifier_of(ob) for ob in chosen)
     if not found and not follows and active is not None and active.type == "MESH":
-        found = live_children.on_surface(active)
+        found = [ob for ob in _unbound_with(active) if live_children.modifier_of(ob)]
     return found

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ from ..nodes import follow, groups
 from ..nodes.follow import SURFACE, TILES
 from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
 from ..nodes.groups import Kind
-from ..reading import attributes
+from ..reading import attributes, overrides
 from ..reading.users import objects_using, own_objects_using
 from .places import lacking, root_attributes
 
@@ -25,6 +25,7 @@ _GROUPS = (
     ids.FOLLOW_NORMALS_GROUP,
     ids.FOLLOW_CURVE_GROUP,
 )
+_FOLLOWING = (*_GROUPS, ids.FOLLOW_LIVE_GROUP, ids.CHILDREN_GROUP)
 _ELEMENTS = {
     "CURVES": "Strand",
     "MESH": "Vertex",
@@ -50,11 +51,18 @@ def holders(objects: Iterable[bpy.types.Object]) -> list[bpy.types.ID]:
 
 
 def is_own(ob: bpy.types.Object) -> bool:
-    """Tells whether this file stores the locations of an object. Those of linked data and of
-    library overrides belong to the file that they come from: Blender saves no change of them.
+    """Tells whether this file stores the locations of an object and how it follows. Those of linked
+    data and of library overrides belong to the file that they come from: Blender saves no change of
+    them.
     """
     holder = holder_of(ob)
-    return holder is None or (holder.library is None and holder.override_library is None)
+    if holder is not None and (holder.library or holder.override_library):
+        return False
+    return not any(
+        overrides.is_of_library(modifier)
+        for name in _FOLLOWING
+        for modifier in groups.modifiers(ob, name)
+    )
 
 
 def curve_table(ob: bpy.types.Object) -> bpy.types.Object | None:
@@ -157,8 +165,7 @@ def anything_follows() -> bool:
     """Tells whether the file has a node group by which something follows a surface. It is far
     quicker than a look at all objects, so panels ask it first.
     """
-    names = (*_GROUPS, ids.FOLLOW_LIVE_GROUP, ids.CHILDREN_GROUP)
-    return any(groups.name_of(group) in names for group in bpy.data.node_groups)
+    return any(groups.name_of(group) in _FOLLOWING for group in bpy.data.node_groups)
 
 
 def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
@@ -172,6 +179,18 @@ def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
         and live_modifier_of(ob) is None
         and surface_of(ob) == surface
     ]
+
+
+def bound_to(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns the file's own objects that follow a surface in whatever way, and the strays."""
+    return [*followers_of(surface), *live_followers_of(surface), *strays_of(surface)]
+
+
+def own_or_all(things: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Returns those of the things that this file can bind. Where there are none, it returns all, so
+    that a refusal names them.
+    """
+    return [ob for ob in things if is_own(ob)] or list(things)
 
 
 def was_bound(ob: bpy.types.Object) -> bool:

@@ -21,7 +21,7 @@ from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
-from ..reading import attributes, cage, rules
+from ..reading import attributes, cage, overrides, rules
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes, proxy, shared_tables, tables
 from .follow_properties import follows
@@ -93,7 +93,6 @@ class Request:
         check_surface(surface, depsgraph.scene)
         for ob in things:
             check_thing(ob, surface)
-            check_own(ob)
             if modifier_of(ob) is None:
                 check_first(ob)
         followers = [ob for ob in own_followers_of(surface) if ob not in without]
@@ -281,8 +280,27 @@ def ensure_capture(surface: bpy.types.Object) -> None:
         surface.modifiers.move(here, wanted)
 
 
+def _check_capture(surface: bpy.types.Object) -> None:
+    """Raises RefusalError for an override to which the library has given *Limit Capture* at a place
+    from which it cannot be moved to the subdivision.
+    """
+    modifier = next(groups.modifiers(surface, ids.CAPTURE_GROUP), None)
+    if modifier is None or not overrides.is_of_library(modifier):
+        return
+    here, there = surface.modifiers.find(modifier.name), rules.place_of_subsurf(surface)
+    passed = surface.modifiers[here + 1 : there] if here < there else surface.modifiers[there:here]
+    if any(overrides.is_of_library(other) for other in passed):
+        raise RefusalError(
+            f"{surface.name} is a library override, in which modifiers of the library cannot be "
+            f"moved: in the file from which it comes, move its modifier {modifier.name} directly "
+            "before the Subdivision Surface modifier"
+        )
+
+
 def remove_unused_capture(surface: bpy.types.Object) -> None:
-    """Removes *Limit Capture* from a surface that nothing follows any more."""
+    """Removes *Limit Capture* from a surface that nothing follows any more. That of a library stays
+    on its overrides.
+    """
     if (
         surface.is_editable
         and not tables.all_of_surface(surface)
@@ -290,7 +308,8 @@ def remove_unused_capture(surface: bpy.types.Object) -> None:
         and not live_followers_of(surface)
     ):
         for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):
-            surface.modifiers.remove(modifier)
+            if not overrides.is_of_library(modifier):
+                surface.modifiers.remove(modifier)
 
 
 def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:
@@ -308,6 +327,7 @@ def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:
     ambiguous = rules.why_ambiguous(surface)
     if ambiguous:
         raise RefusalError(ambiguous)
+    _check_capture(surface)
 
 
 def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
@@ -343,17 +363,16 @@ def check_first(ob: bpy.types.Object) -> None:
         )
 
 
-def check_own(ob: bpy.types.Object) -> None:
-    """Raises RefusalError for an object whose locations this file does not store."""
+def check_editable(ob: bpy.types.Object) -> None:
+    """Raises RefusalError for an object that cannot be bound or unbound, or for which Blender does
+    not save that.
+    """
+    if not ob.is_editable or not ob.data.is_editable:
+        raise RefusalError(f"{ob.name} is linked from another file: make it local first")
     if not is_own(ob):
         raise RefusalError(
             f"{ob.name} is a library override, and Blender does not save what it is bound to: make "
             "it local first, or do this in the file from which it comes"
         )
-
-
-def check_editable(ob: bpy.types.Object) -> None:
-    if not ob.is_editable or not ob.data.is_editable:
-        raise RefusalError(f"{ob.name} is linked from another file: make it local first")
     if ob.mode == "EDIT" and ob.type == "MESH":  # other types have no data of their own there
         raise RefusalError(f"{ob.name} is in Edit Mode: leave it first")

@@ -10,6 +10,7 @@ import bpy
 
 from .. import ids
 from ..nodes import groups
+from ..reading import overrides
 
 USE, OBJECT = "Use Proxy", "Proxy"
 
@@ -34,7 +35,7 @@ def update(surface: bpy.types.Object | None, table: bpy.types.Object, wanted: bo
 
 
 def _copy(surface: bpy.types.Object) -> bpy.types.Object:
-    proxy = surface.copy()
+    proxy = overrides.make_own(surface.copy())
     for collection in proxy.users_collection:  # the copy of a rigid body is one, too
         collection.objects.unlink(proxy)
     capture = next(groups.modifiers(proxy, ids.CAPTURE_GROUP))

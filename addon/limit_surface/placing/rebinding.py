@@ -20,13 +20,7 @@ from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import curve_points, following, live_binding, seals
 from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
-from .followers import (
-    holder_of,
-    live_followers_of,
-    live_modifier_of,
-    own_followers_of,
-    strays_of,
-)
+from .followers import bound_to, holder_of, is_own, live_modifier_of
 from .newcomers import bound_at_closest, put_places
 from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed
@@ -48,6 +42,7 @@ class Rebound:
     distances: np.ndarray  # by which roots moved, in world units
     lost: int
     reason: str  # why the lost ones could not be kept
+    overridden: list[str]  # what follows the surface, but belongs to a library
 
     def __str__(self) -> str:
         count = len(self.distances)
@@ -60,10 +55,17 @@ class Rebound:
         return text
 
     @property
-    def warning(self) -> str:
-        """Names what could not be kept; empty if all was."""
-        if not self.lost:
-            return ""
+    def warnings(self) -> list[str]:
+        """Names what could not be kept, and what was left as it was."""
+        texts = [self._about_lost()] if self.lost else []
+        if self.overridden:
+            texts.append(
+                f"Not bound again, because Blender does not save it of library overrides: "
+                f"{', '.join(self.overridden)}"
+            )
+        return texts
+
+    def _about_lost(self) -> str:
         stay = by_count(
             self.lost,
             "it stays where it is, and is selected",
@@ -90,11 +92,7 @@ class Rebinding:
         max_distance: float = math.inf,
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        following_now = [
-            *own_followers_of(surface),
-            *live_followers_of(surface),
-            *strays_of(surface),
-        ]
+        following_now = [ob for ob in bound_to(surface) if is_own(ob)]
         bound = list(dict.fromkeys([*following_now, *things]))
         # For control points that were added there are no places that could be kept.
         self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
@@ -103,8 +101,6 @@ class Rebinding:
             curve_points.check(ob, surface)
         for ob in kept:
             following.check_thing(ob, surface)
-            if not live_modifier_of(ob):
-                following.check_own(ob)
         self._live = [ob for ob in kept if live_modifier_of(ob)]
         live_binding.prepare_rebinding(self._live, depsgraph)
         for ob in kept:
@@ -128,6 +124,7 @@ class Rebinding:
             self._find = ByFace(self._posed)
         self._target, self.bound, self.uv_maps = surface, bound, maps.names
         self._surface, self._names = surface.name, [ob.name for ob in bound]
+        self._overridden = [ob.name for ob in bound_to(surface) if not is_own(ob)]
         self._by_nodes = [ob for ob in kept if ob not in self._live]
 
     def compute(self, context: bpy.types.Context) -> Pieces:
@@ -167,6 +164,7 @@ class Rebinding:
             ),
             sum(len(relocation.lost) for relocation in self._relocations),
             self._find.reason,
+            self._overridden,
         )
 
 

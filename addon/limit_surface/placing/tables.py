@@ -126,10 +126,10 @@ def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:
 
 def all_of_surface(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns all of the file's own tables of tiles of a surface."""
-    return [ob for ob in own_objects_using(surface) if _is_own(ob) and surface_of(ob) == surface]
+    return [ob for ob in own_objects_using(surface) if is_own(ob) and surface_of(ob) == surface]
 
 
-def _is_own(ob: bpy.types.Object) -> bool:
+def is_own(ob: bpy.types.Object) -> bool:
     """Tells whether the object and its data belong to this file. The data of library overrides do
     not.
     """
@@ -147,7 +147,7 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
     table = of_surface(surface)
     points = PointsTable(tiles, bound.vertices)
     held = points_of(table) if table else _unread_points(surface)
-    if held is not None and not _is_own(held):
+    if held is not None and not is_own(held):
         held = None
     holder = hidden_object(ids.POINTS_TABLE, surface, held)
     points.fill(holder.data)
@@ -239,7 +239,7 @@ def unread() -> list[bpy.types.Object]:
     found = [
         ob
         for ob in bpy.data.objects
-        if ob.hide_select and ob.name.startswith(names) and ob.type == "MESH" and _is_own(ob)
+        if ob.hide_select and ob.name.startswith(names) and ob.type == "MESH" and is_own(ob)
     ]
     return [ob for ob in found if not readers(ob)]
 

@@ -56,7 +56,6 @@ class Unbinding:
     def __init__(self, things: Sequence[bpy.types.Object], shape: Shape) -> None:
         for ob in things:
             following.check_editable(ob)
-            following.check_own(ob)
         self._things, self._shape = list(things), shape
         self._frozen: list[_Frozen] = []
         if shape == "SHOWN":
@@ -245,7 +244,7 @@ def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Obj
     read any more.
     """
     for table in used:
-        if table.library is None and not tables.readers(table):
+        if tables.is_own(table) and not tables.readers(table):
             surfaces.add(tables.surface_of(table))
             proxy.update(None, table, False)
             tables.remove(table)
