@@ -81,8 +81,10 @@ def test_overridden_hair_stays_bound_as_its_own_file_says(tmp_path):
     check_frames(*reopen(tmp_path))
 
 
-REFUSED = {
+REFUSED: dict[str, dict[str, object]] = {
     "limit_unbind": {},
+    "limit_rebind": {},
+    "limit_follow": {"mode": "LIVE"},
 }
 
 
@@ -223,3 +225,13 @@ def test_overridden_live_children_are_left_alone(tmp_path):
     assert ob
     assert stack(children) == [ids.CHILDREN_GROUP]
     assert np.any(children.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.curves)
+
+
+@pytest.mark.parametrize("follow", ["NODES", "LIVE"])
+def test_rebinding_names_the_overrides_that_it_leaves_alone(follow, tmp_path, capfd):
+    ob, _hair = override(save_collection(tmp_path, follow=follow))
+    scenes.add_points(ob, follow="NODES")
+    select(ob)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    text = "because Blender does not save it of library overrides: Limit Hair"
+    assert text in capfd.readouterr().out
