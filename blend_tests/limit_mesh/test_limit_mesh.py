@@ -262,6 +262,22 @@ def test_locations_on_another_surface_are_not_carried_over(follow):
     np.testing.assert_allclose(attributes.read(shown, "position"), before, atol=2e-6)
 
 
+@pytest.mark.parametrize(
+    ("kind", "domain"), [("FLOAT", "POINT"), ("BOOLEAN", "EDGE"), ("FLOAT_VECTOR", "CORNER")]
+)
+@pytest.mark.parametrize("name", ["limit_face", "limit_uv", "rest_root", "rest_rot", "limit_seal"])
+@pytest.mark.parametrize("follow", ["NONE", "NODES"])
+def test_reserved_names_of_any_type_are_not_carried_over(name, kind, domain, follow, capfd):
+    ob = scenes.grid_with_holes()
+    ob.data.attributes.new(name, kind, domain)
+    stored = make(ob, levels=1, store_locations=True, follow=follow).data.attributes
+    assert (stored["rest_rot"].data_type, stored["rest_rot"].domain) == ("QUATERNION", "POINT")
+    assert (stored["limit_face"].data_type, stored["limit_face"].domain) == ("INT", "POINT")
+    if name != "limit_seal":
+        assert f"{name} is not carried over: the name is reserved" in capfd.readouterr().out
+    assert name not in make(ob, levels=1, follow="NONE").data.attributes
+
+
 def test_what_is_not_as_asked_for_a_linked_mesh_is_told(tmp_path, capfd):
     ob = scenes.flat_grid(2)
     ob.shape_key_add(name="Basis")

@@ -17,7 +17,7 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..placing.places import root_attributes
+from ..placing.places import ROOT_KINDS, root_attributes
 from ..reading import attributes, ragged_rows, rules, uv_map
 from ..tasks.job import Progress
 from .places import CageElements
@@ -62,11 +62,17 @@ class CageAttributes:
 
 
 def _is_of_follower(attribute: bpy.types.Attribute) -> bool:
-    """Tells whether the attribute stores places on another surface, and is not the user's own."""
-    name, of_roots = attribute.name, root_attributes(attribute.id_data)
-    if name in of_roots:
-        return (attribute.data_type, attribute.domain) == of_roots[name]
-    return name in _OF_FOLLOWERS or name.startswith(ids.LIVE_REST)
+    """Tells whether the attribute has the name of one that stores places on another surface. The
+    user's own of such a name would be in the way of those that the new mesh may get.
+    """
+    name = attribute.name
+    return name in ROOT_KINDS or name in _OF_FOLLOWERS or name.startswith(ids.LIVE_REST)
+
+
+def _is_users(attribute: bpy.types.Attribute) -> bool:
+    """Tells whether such an attribute is certainly the user's own, because of its type."""
+    wanted = root_attributes(attribute.id_data).get(attribute.name)
+    return wanted is not None and (attribute.data_type, attribute.domain) != wanted
 
 
 def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
@@ -78,6 +84,10 @@ def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
         if name.startswith(".") and name != SEAM_BEFORE_5:
             continue
         if _is_of_follower(attribute):
+            if _is_users(attribute):
+                found.notes.append(
+                    f"{name} is not carried over: the name is reserved for locations on a surface"
+                )
             continue
         if name in _OWN and not (name == "sharp_face" and with_sharp_faces):
             continue
