@@ -340,6 +340,38 @@ def test_constraints_and_drivers():
     refused_and_unchanged(target, thing, "constraints or drivers hold the object elsewhere")
 
 
+@pytest.mark.parametrize("rotation", [(0, 0, 0), (0.3, 0.2, 0.9)])
+@pytest.mark.parametrize("scale", [(0, 0, 0), (1, 1, 0)])
+@pytest.mark.parametrize("own", [(1, 1, 1), (0, 0, 0)])
+@pytest.mark.parametrize("depth", [1, 2])
+def test_a_child_of_a_parent_without_extent(depth, own, scale, rotation):
+    """It is not said that constraints or drivers hold it, because it has none."""
+    target = scenes.flat_grid(4)
+    thing = add_object((1, 1, 1), name="Flat")
+    thing.rotation_euler, thing.scale = rotation, scale
+    for _ in range(depth):
+        thing.select_set(False)
+        child = add_object((0.2, 0.1, 0.4), name="Child")
+        child.parent, child.scale = thing, own
+        thing = child
+    reason = "a parent has a scale of 0 in the direction of the move"
+    refused_and_unchanged(target, thing, reason)
+
+
+def test_a_constraint_in_the_plane_of_a_flat_parent():
+    target = scenes.flat_grid(4)
+    parent = add_object((1, 1, 0), name="Flat")
+    parent.scale.z = 0
+    other = add_object((5, 5, 0), name="Other")
+    thing = add_object((0.2, 0.1, 0), name="Child")
+    thing.parent = parent
+    thing.constraints.new("COPY_LOCATION").target = other
+    for ob in (parent, other):
+        ob.select_set(False)
+    bpy.context.view_layer.update()
+    refused_and_unchanged(target, thing, "constraints or drivers hold the object elsewhere")
+
+
 @pytest.mark.parametrize("scale", [(0, 0, 0), (1, 0, 2)])
 def test_a_child_without_extent(scale):
     target = scenes.flat_grid(4)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The move of one object to a place in the world through its own location and rotation.
 
-Scale, delta transforms and parents do not change. Locks, constraints and drivers may keep the
-object elsewhere, which shows only when Blender has evaluated the object again. So `finish` checks
-where it is then, and restores it if it is somewhere else.
+Scale, delta transforms and parents do not change. Locks, constraints, drivers and parents without
+extent may keep the object elsewhere, which shows only when Blender has evaluated the object again.
+So `finish` checks where it is then, and restores it if it is somewhere else.
 """
 
 import bpy
@@ -17,6 +17,7 @@ from ..placing.rotations import unit
 # angle
 ELSEWHERE = 1e-5
 ASKEW = 1e-3
+FLAT = 1e-6  # what single precision leaves of a scale of 0, as a share of the largest scale
 
 _ROTATIONS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 _LOCKED_TOGETHER = {"rotation_quaternion", "rotation_axis_angle"}
@@ -34,7 +35,8 @@ class ObjectMove:
     def begin(self) -> None:
         ob = self._ob
         basis = _array(ob.matrix_basis)[:3, :3]
-        into_parent = self._into_parent(basis)
+        self._of_parent = self._parent_matrix(basis)
+        into_parent = np.linalg.pinv(self._of_parent)
         move = into_parent @ (self._position - self._before[:3, 3])
         ob.location = np.add(ob.location, move)
         scale = self._scale()
@@ -56,17 +58,24 @@ class ObjectMove:
     def _scale(self) -> np.ndarray:
         return np.multiply(self._ob.scale, self._ob.delta_scale)
 
-    def _into_parent(self, basis: np.ndarray) -> np.ndarray:
-        """Returns the matrix from directions in the world to those of the space that the object's
-        own location has.
+    def _parent_matrix(self, basis: np.ndarray) -> np.ndarray:
+        """Returns the matrix from directions in the space that the object's own location has to
+        those in the world.
         """
         parent = self._ob.parent
         if not parent:
             return np.eye(3)
         if self._scale().all():  # whatever the parent is to the object: a vertex, a bone
-            return np.linalg.pinv(self._before[:3, :3] @ np.linalg.pinv(basis))
-        of_parent = parent.matrix_world @ self._ob.matrix_parent_inverse
-        return np.linalg.pinv(_array(of_parent)[:3, :3])
+            return self._before[:3, :3] @ np.linalg.pinv(basis)
+        return _array(parent.matrix_world @ self._ob.matrix_parent_inverse)[:3, :3]
+
+    def _is_out_of_reach(self, tolerance: float) -> bool:
+        """Tells whether the object's own location cannot bring it to the place, because a parent
+        has no extent in that direction.
+        """
+        move = self._position - self._before[:3, 3]
+        within = self._of_parent @ np.linalg.pinv(self._of_parent, rcond=FLAT) @ move
+        return bool(np.abs(within - move).max() > tolerance)
 
     def _turned(self, rotation: np.ndarray, frame: np.ndarray, sign: np.ndarray) -> np.ndarray:
         """Returns the rotation that puts the object's Z along the normal, all in its parent's
@@ -105,6 +114,8 @@ class ObjectMove:
         now = _array(self._ob.matrix_world)
         size = max(np.abs(self._position).max(), np.abs(self._before[:3, 3]).max())
         if not np.abs(now[:3, 3] - self._position).max() <= ELSEWHERE * size:
+            if self._is_out_of_reach(ELSEWHERE * size):
+                return "a parent has a scale of 0 in the direction of the move"
             if self._ob.parent and not self._scale().all():
                 return "its scale is 0, and its parent is a bone or vertices of an object"
             return "constraints or drivers hold the object elsewhere"
