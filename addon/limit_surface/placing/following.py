@@ -372,7 +372,7 @@ def check_editable(ob: bpy.types.Object) -> None:
     if not is_own(ob):
         raise RefusalError(
             f"{ob.name} is a library override, and Blender does not save what it is bound to: make "
-            "it local first, or do this in the file from which it comes"
+            "it and its data local first, or do this in the file from which it comes"
         )
     if ob.mode == "EDIT" and ob.type == "MESH":  # other types have no data of their own there
         raise RefusalError(f"{ob.name} is in Edit Mode: leave it first")
