@@ -32,7 +32,9 @@ constexpr double kSecondDerivativeError = 1e-11;
 /// shape it is between 2 and 100. It is large on slivers, and grows without bound towards places
 /// where du x dv vanishes, as on a fold or at a smooth corner of one face.
 constexpr double kNormalError = 1e-11;
-/// Where the condition number is larger, the normal is NaN.
+/// Where the condition number is larger, the normal is NaN. It is also NaN on refined faces if this
+/// is so with 1/4096 of the mesh's largest coordinate in place of S: their points are rounded at
+/// their own coordinates.
 constexpr double kMostNormalCondition = 0x1p30;
 
 /// How many derivatives an evaluation gives.

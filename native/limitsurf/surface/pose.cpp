@@ -119,13 +119,13 @@ void Pose::set(const Points& cage, int threads) {
   for (const Box& part : parts) {
     box.include(part.low, part.high);
   }
-  extent_ = 0;
-  double largest = 0;
+  extent_ = largest_coordinate_ = 0;
   for (int c = 0; c < 3 && count > 0; ++c) {
     extent_ = std::max(extent_, box.high[c] - box.low[c]);
-    largest = std::max({largest, std::abs(box.low[c]), std::abs(box.high[c])});
+    largest_coordinate_ =
+        std::max({largest_coordinate_, std::abs(box.low[c]), std::abs(box.high[c])});
   }
-  residual_unit_ = powerOfTwo(largest);
+  residual_unit_ = powerOfTwo(largest_coordinate_);
   refinePoints();
   steps_made_.clear();
   parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {

@@ -59,6 +59,8 @@ class Pose {
 
   /// The longest side of the bounding box of the control points.
   double extent() const { return extent_; }
+  /// The largest coordinate of a control point.
+  double largestCoordinate() const { return largest_coordinate_; }
 
   const Padded& point(int i) const { return points_[i]; }
   /// The rounding error of a point, so that point(i) + residual(i) has 24 bits more. It is 0 unless
@@ -100,7 +102,7 @@ class Pose {
 
   const TileTable* table_;
   bool is_set_ = false;
-  double extent_ = 0;
+  double extent_ = 0, largest_coordinate_ = 0;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
   std::vector<std::array<float, 3>> residuals_;  // of the refined points, over residual_unit_

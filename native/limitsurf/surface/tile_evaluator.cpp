@@ -19,6 +19,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// rounding of derivatives; the factor leaves room for coefficients of modes that are larger than
 /// the mesh, and for 8 steps.
 constexpr double kFarAboveRounding = 16 / kMostNormalCondition;
+/// The points of refined faces are rounded at their own coordinates, so that du and dv err by up to
+/// 16 u C there, where C is the mesh's largest coordinate. If the condition number with this part
+/// of C in place of the size is at most kMostNormalCondition, that turns a normal by 2^(4 - 53 + 30
+/// + 12) = 2^-7 at most.
+constexpr double kOfLargestCoordinate = 0x1p-12;
 
 }  // namespace
 
@@ -188,7 +193,8 @@ Vector3 TileEvaluator::normalDirection(const TileLocation& at, const Jet& jet) {
 NormalLimits TileEvaluator::normalLimits(int steps, int depth) const {
   // With n, the rounding of du and dv grows as (2 lambda)^n, which is less than 2^(2n/5 + 1).
   const int growth = steps > kStepsToParallel ? 2 * steps / 5 + 1 : 0;
-  const double least = std::ldexp(kFarAboveRounding * pose_.extent(), depth + growth);
+  const double size = std::max(pose_.extent(), kOfLargestCoordinate * pose_.largestCoordinate());
+  const double least = std::ldexp(kFarAboveRounding * size, depth + growth);
   return {steps > kStepsToParallel ? kLowestSineSquare : 0, least * least};
 }
 
@@ -199,8 +205,15 @@ bool TileEvaluator::hasPlainNormal(const TileLocation& at, const Jet& jet) const
 
 double TileEvaluator::sizeOf(const TileLocation& at) const {
   double size = 0;
+  bool is_refined = at.depth > 0;
+  const auto findRefined = [&](const auto& points) {
+    is_refined = is_refined || std::any_of(points.begin(), points.end(), [&](int point) {
+                   return point >= table_.points.cagePoints();
+                 });
+  };
   if (at.tile.kind == TileRef::kBSpline) {
     const BSplineTile& tile = table_.bsplines[at.tile.index];
+    findRefined(tile.points);
     for (const int point : tile.points) {
       size = std::max(size, pose_.difference(point, tile.points[5]).abs().maxCoeff());
     }
@@ -210,10 +223,14 @@ double TileEvaluator::sizeOf(const TileLocation& at) const {
     const RingPoints& ring = table_.rings[tile.ring];
     const Points& modes = pose_.ring(tile.ring).coefficients;
     size = modes.bottomRows(modes.rows() - 1).cwiseAbs().maxCoeff();
+    findRefined(ring.points);
     const Pose::OuterPoints outer = pose_.outerPoints(index);
     for (std::size_t i = 0; i < ring.basis->outerModes(tile.face).slots().size(); ++i) {
       size = std::max(size, outer.points[i].abs().maxCoeff());
     }
+  }
+  if (is_refined) {
+    size = std::max(size, kOfLargestCoordinate * pose_.largestCoordinate());
   }
   return std::ldexp(size, at.depth);
 }

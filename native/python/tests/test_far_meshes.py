@@ -6,11 +6,14 @@ First derivatives). The two differ by exact numbers.
 import limitsurf as ls
 import numpy as np
 import pytest
+import shapes
 
 SIDE = 6
 ROUNDING = 2.0**-53
 #: Times ROUNDING and the largest coordinate
 FIRST_ERROR, NORMAL_ERROR = 16, 32
+#: By how much large coordinates turn a normal that is not NaN, in radians
+MOST_TURN = 2.0**-7
 
 
 def second_error(sharpness: float) -> float:
@@ -81,3 +84,26 @@ def test_what_large_coordinates_cost(kind, sharpness, distance):
     turned = np.linalg.norm(got.normal - true.normal, axis=1)
     allowed = NORMAL_ERROR * unit * condition / np.maximum(*lengths) + 1e-11 * condition
     assert (turned <= allowed).all()
+
+
+@pytest.mark.parametrize("distance", [2.0**16, 2.0**20, 2.0**26, 2.0**30])
+@pytest.mark.parametrize("cut", [False, True])
+def test_normals_of_far_meshes_are_right_or_nan(distance, cut):
+    """A cube that is nearly collapsed onto a line: far away its tangents, which are nearly
+    parallel, are as different as their rounding.
+    """
+    cube, quads = shapes.cube()
+    unit = 2.0**-20
+    line = np.round(np.outer(cube @ [1, 2, 0.5], [0.3, 0.7, 0.11]) / unit) * unit
+    faces = shapes.halves(quads) if cut else quads
+    near, far = (
+        ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
+        for positions in (line, line + distance)
+    )
+    rng = np.random.default_rng(0)
+    at = rng.integers(0, near.face_count, 2000), rng.random((2000, 2))
+    truth, normal = (surface.evaluate(*at, 1).normal for surface in (near, far))
+    assert np.isfinite(truth).all()
+    is_known = np.isfinite(normal[:, 0])
+    assert is_known.any() == (distance < 2.0**20)
+    assert np.linalg.norm(normal - truth, axis=1)[is_known].max(initial=0) < MOST_TURN

@@ -55,14 +55,14 @@ class MergedHits {
       }
     }
     const Span<int> at = vertices(hit.at.face);
-    return isKnownAmong(on_large_faces_, hit) ||
-           std::any_of(at.begin(), at.end(),
-                       [&](int vertex) { return isKnownAmong(at_vertex_[vertex], hit); });
+    return isKnownAmong(on_large_faces_, hit) || std::any_of(at.begin(), at.end(), [&](int vertex) {
+             return isKnownAmong(at_vertex_[vertex], hit);
+           });
   }
 
   bool isKnownAmong(const std::vector<std::size_t>& places, const RayHit& hit) const {
-    for (auto place = places.rbegin();
-         place != places.rend() && isWithinReach(kept_[*place], hit); ++place) {
+    for (auto place = places.rbegin(); place != places.rend() && isWithinReach(kept_[*place], hit);
+         ++place) {
       if (isSame(kept_[*place], hit)) {
         return true;
       }

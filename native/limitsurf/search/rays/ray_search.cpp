@@ -107,8 +107,8 @@ class RaySearch {
   /// Hits so many tolerances apart count as one: they are less than kSearchError apart.
   static constexpr double kSameHit = 4;
 
-  /// A ray looks at a few parts of patches, or at millions where it runs along many of them. So many
-  /// take about a millisecond.
+  /// A ray looks at a few parts of patches, or at millions where it runs along many of them. So
+  /// many take about a millisecond.
   static constexpr std::int64_t kCellsPerPass = 4096;
 
   double margin() const { return found_.tolerance; }
