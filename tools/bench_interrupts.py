@@ -185,6 +185,34 @@ def sampling() -> Iterator[tuple[str, Call]]:
     )
 
 
+def hostile() -> Iterator[tuple[str, Call]]:
+    """Meshes on which single searches or cells take long, of whatever thread."""
+    rng = np.random.default_rng(5)
+    count = 15_000
+    angle = 2 * np.pi * np.arange(count) / count
+    rim = np.stack([np.cos(angle), np.sin(angle), np.full(count, 0.5)], 1)
+    around = np.stack([np.zeros(count, int), np.ones(count, int), np.arange(count) + 2], 1)
+    book = ls.ControlMesh.from_faces(np.vstack([[[0, 0, 0], [0, 0, 1.0]], rim]), around)
+    yield "LimitSurface, 15,000 faces on one edge", lambda: ls.LimitSurface(book)
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    stack = ls.LimitSurface(
+        ls.ControlMesh.from_faces(np.tile(square, (400, 1)), np.arange(1600).reshape(-1, 4))
+    )
+    within = [[-1, -1, 0]] * 4, [[1.0, 1, 0]] * 4
+    yield "ray_cast_all, within 400 sheets", lambda: stack.ray_cast_all(*within)
+    same = ls.LimitSurface(ls.ControlMesh.from_faces(square, np.tile(np.arange(4), (1000, 1))))
+    corners = np.round(rng.random((300, 3))) * [1, 1, 0]
+    chords = np.roll(corners, 1, 0) - corners + [1e-9, 0, 0]
+    yield "ray_cast, 1,000 equal faces", lambda: same.ray_cast(corners, chords)
+    tip = rng.normal(size=(2000, 3)) * [0.1, 0.1, 0.2] + [0, 0, 0.9]
+    pole = ls.ControlMesh.from_faces(*shapes.pole(count))
+    yield "closest, first call at a pole", lambda: ls.LimitSurface(pole).closest(tip)
+    _, quads = shapes.grid(20, 20)
+    needles = rng.normal(size=(441, 3)) * [1, 1e-8, 1e-8]
+    thin = ls.LimitSurface(ls.ControlMesh.from_faces(needles, quads))
+    yield "scatter_blue_noise, needles", lambda: thin.scatter_blue_noise(count=2000)
+
+
 def tracing() -> Iterator[tuple[str, Call]]:
     middle, rng = surface("middle"), np.random.default_rng(0)
     line = np.stack([np.linspace(0, 300, 300), np.linspace(0, 300, 300), np.zeros(300)], 1)
@@ -341,7 +369,7 @@ def main() -> None:
     )
     print("|---|---:|---:|---:|---:|")
     slow = []
-    for group in (making, posing, evaluating, searching, sampling, tracing, texturing):
+    for group in (making, posing, evaluating, searching, sampling, hostile, tracing, texturing):
         for name, call in group():
             if given.names and not any(part in name for part in given.names):
                 continue
