@@ -13,6 +13,7 @@ from .. import ids
 from ..counting import counted
 from ..errors import RefusalError
 from ..placing import followers, following, live_binding, new_hair
+from ..placing.all_or_nothing import all_or_nothing
 from ..placing.binding import Binding
 from ..placing.follow_properties import FollowOrLiveProperties, can_deform, why_not_automatic
 from ..placing.new_hair import Strands
@@ -155,16 +156,18 @@ class OBJECT_OT_limit_hair_from_particles(
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
-        hair = new_hair.add(context, ids.HAIR_OBJECT, surface, made.strands, _found(made.material))
         how, why = "", ""
-        if made.bindings:
-            made.bindings.write(hair)
-            how = "by Geometry Nodes"
-        elif self.follow == "LIVE":
-            depsgraph = context.evaluated_depsgraph_get()
-            live_binding.LiveRequest(surface, depsgraph, [hair]).write(context)
-            how = "live"
-        elif self.follow == "AUTO" and can_deform(surface):
+        with all_or_nothing(context, surface):
+            material = _found(made.material)
+            hair = new_hair.add(context, ids.HAIR_OBJECT, surface, made.strands, material)
+            if made.bindings:
+                made.bindings.write(hair)
+                how = "by Geometry Nodes"
+            elif self.follow == "LIVE":
+                depsgraph = context.evaluated_depsgraph_get()
+                live_binding.LiveRequest(surface, depsgraph, [hair]).write(context)
+                how = "live"
+        if not how and self.follow == "AUTO" and can_deform(surface):
             why = why_not_automatic(surface)
         context.view_layer.update()
         self._report(made, how, why)

@@ -18,6 +18,7 @@ from . import live_attributes, live_surface, live_thing
 from . import live_kept as kept
 from .followers import sharers
 from .live_chains import Chains, Followers
+from .live_defects import Defects
 from .live_edits import Edits
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
@@ -89,11 +90,14 @@ def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
     }
     chains = Chains(followers if wanted else {})
     posed = chains.behind(wanted)
+    defects = Defects()
     for surface, things in followers.items():
         if surface not in posed:
             edited = [ob for ob in things if ob in changed or ob.data in changed]
-            _take_up_edits(surface, edited, depsgraph)
+            with defects.held_back(surface, edited):
+                _take_up_edits(surface, edited, depsgraph)
     _pose_some(wanted, {s: followers[s] for s in followers if s in posed}, chains, depsgraph)
+    defects.raise_first()
 
 
 def _pose_some(
@@ -106,13 +110,19 @@ def _pose_some(
     all are taken up before anything moves, because the surfaces are then as they were when the
     edits were made.
     """
-    good = {surface: _take_up_all(surface, followers[surface], depsgraph) for surface in followers}
+    defects = Defects()
+    good: dict[bpy.types.Object, list[bpy.types.Object]] = {}
+    for surface, things in followers.items():
+        with defects.held_back(surface, things):
+            good[surface] = _take_up_all(surface, things, depsgraph)
     moved: set[bpy.types.ID] = set()
     for surface in chains.in_order():
-        if surface in good:
-            is_behind = chains.depends(surface, moved)
-            if is_behind or surface in wanted:
-                moved |= _pose(surface, followers[surface], good[surface], depsgraph, is_behind)
+        is_behind = chains.depends(surface, moved)
+        if surface in good and (is_behind or surface in wanted):
+            things = followers[surface]
+            with defects.held_back(surface, things):
+                moved |= _pose(surface, things, good[surface], depsgraph, is_behind)
+    defects.raise_first()
 
 
 def _has_to_be_posed(

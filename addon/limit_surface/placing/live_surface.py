@@ -168,7 +168,12 @@ def least_subdivided(
     """
     if bpy.app.version < (4, 5):
         return evaluated, evaluated.data
-    geometry = evaluated.evaluated_geometry()
+    try:
+        geometry = evaluated.evaluated_geometry()
+    except TypeError:
+        # Blender refuses what is to be evaluated again, as after values were changed that have
+        # keys. The mesh that it has evaluated last, and shows, is still there.
+        return evaluated, evaluated.data
     return geometry, geometry.mesh_base
 
 

@@ -29,6 +29,7 @@ from . import (
     roots,
     subsurf_offer,
 )
+from .all_or_nothing import all_or_nothing
 from .border import borders
 from .distribution import Expected, Scattered, why_nothing
 from .follow_properties import FollowOrLiveProperties, why_it_stays
@@ -148,7 +149,8 @@ class ScatterOperator(
        follow the surface: none of them touches Blender's data;
     6. in `finish`, `add`: the subclass puts the arrays into the file, and returns the new object.
        Until `add` returns it cleans up after itself;
-    7. in `finish`, what was found by `Order.bound` is written, so that the object follows;
+    7. in `finish`, what was found by `Order.bound` is written, so that the object follows. Where
+       that fails, the object is removed again;
     8. `_report`: ScatterOperator says what was made.
     """
 
@@ -179,22 +181,27 @@ class ScatterOperator(
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
         self.surface = surface.name
+        with all_or_nothing(context, surface):
+            how = self._put(context, surface, made)
+        context.view_layer.update()
+        self._report(made, how)
+        return {"FINISHED"}
+
+    def _put(self, context: bpy.types.Context, surface: bpy.types.Object, made: Made) -> str:
+        """Puts what was made into the file, and returns how it follows."""
         if self._adds_subsurf(surface):
             quality = setup.add(surface, made.ground.cage).quality
             if quality < setup.QUALITY:
                 self.report({"WARNING"}, f"Quality is {quality}, {setup.LOW_QUALITY_REASON}")
         ob = self.add(context, surface, made.things)
-        how = ""
         if made.bindings:
             made.bindings.write(ob)
-            how = "by Geometry Nodes"
-        elif self.follow == "LIVE":
+            return "by Geometry Nodes"
+        if self.follow == "LIVE":
             depsgraph = context.evaluated_depsgraph_get()
             live_binding.LiveRequest(surface, depsgraph, [ob]).write(context)
-            how = "live"
-        context.view_layer.update()
-        self._report(made, how)
-        return {"FINISHED"}
+            return "live"
+        return ""
 
     def maker(self, found: cage.Cage) -> Any:
         """Returns a function of the ground and of progress. It returns what `add` is called with,
