@@ -156,6 +156,7 @@ SEAL = "limit_seal"  # numbers of each vertex that tell it from averages of othe
 LIVE = "limit_live"
 LIVE_REST = "limit_rest"  # the points at rest; with _ and a name: other attributes at rest
 LIVE_FINGERPRINT = "limit_fingerprint"  # of the points as they were written
+LIVE_SOURCE = "limit_source"  # custom property of the data: what the surface's faces came from
 LIVE_WRITTEN = "limit_written"  # custom property of the data: the frame and the matrix of that
 
 CAGE_SCENE = ".limit_cage"

@@ -12,16 +12,7 @@ from ..nodes import children, groups
 from ..nodes.follow import TILES
 from ..placing import all_tiles, followers, following, live, live_children, live_kept
 from ..placing.follow_state import State, Trouble
-from ..reading import attributes, cage, rules
-
-#: The types of modifiers that move vertices, or change their data, and nothing else
-_DEFORMING = {
-    *("ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DATA_TRANSFER", "DISPLACE"),
-    *("HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH", "LATTICE", "MESH_CACHE", "MESH_DEFORM"),
-    *("MESH_SEQUENCE_CACHE", "NORMAL_EDIT", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY"),
-    *("SURFACE_DEFORM", "UV_PROJECT", "UV_WARP", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX"),
-    *("VERTEX_WEIGHT_PROXIMITY", "VOLUME_DISPLACE", "WARP", "WAVE", "WEIGHTED_NORMAL"),
-}
+from ..reading import attributes, cage, modifier_kinds, rules
 
 
 def check(objects: Sequence[bpy.types.Object]) -> None:
@@ -70,9 +61,9 @@ def check_live(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
         return
     if not live.is_enabled(scene):
         raise RefusalError(f"{ob.name} follows live, which is switched off in {scene.name}")
-    reason = live_kept.trouble(ob)
+    reason, remedy = live_kept.trouble(ob), live_kept.remedy(ob)
     if reason:
-        raise RefusalError(reason)
+        raise RefusalError(f"{reason}; {remedy} puts it right" if remedy else reason)
 
 
 def _check_render(ob: bpy.types.Object) -> None:
@@ -94,7 +85,7 @@ def _check_render(ob: bpy.types.Object) -> None:
                 f"hold what renders show: enable the modifier {modifier.name} in both, or in "
                 "neither, or use --format npz"
             )
-        if modifier.type not in _DEFORMING:
+        if modifier.type not in modifier_kinds.DEFORMING:
             raise RefusalError(
                 f"{ob.name} is bound to the faces that the viewport shows of {surface.name}, and "
                 "files of this format hold what renders show: enable the modifier "

@@ -69,8 +69,8 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
     if waiting := next(filter(None, map(_edited_surface, things)), None):
         text = f"What follows live moves when {waiting.name} leaves Edit Mode"
         wrapped_text.draw(layout, text, "EDITMODE_HLT")
-    for text in _live_troubles(things):
-        wrapped_text.draw_alert(layout.box(), text)
+    for trouble in _live_troubles(things):
+        _draw_trouble(layout, trouble)
     return True
 
 
@@ -94,10 +94,11 @@ def _edited_surface(thing: bpy.types.Object) -> bpy.types.Object | None:
     return surface if surface is not None and surface.data.is_editmode else None
 
 
-def _live_troubles(things: list[bpy.types.Object]) -> list[str]:
+def _live_troubles(things: list[bpy.types.Object]) -> list[Trouble]:
     """Returns why things do not follow live, other than that their surface is in Edit Mode."""
-    troubles = (live_kept.trouble(ob) for ob in things if _edited_surface(ob) is None)
-    return [text for text in troubles if text]
+    still = [ob for ob in things if _edited_surface(ob) is None]
+    found = [Trouble(live_kept.trouble(ob), live_kept.remedy(ob)) for ob in still]
+    return [trouble for trouble in found if trouble.text]
 
 
 def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
@@ -120,6 +121,8 @@ def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
 def _draw_trouble(layout: bpy.types.UILayout, trouble: Trouble) -> None:
     box = layout.box()
     wrapped_text.draw_alert(box, trouble.text)
+    if not trouble.remedy:
+        return
     row = box.row()
     row.enabled = native.available()
     row.operator(trouble.remedy)

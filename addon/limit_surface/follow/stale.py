@@ -87,8 +87,10 @@ def _report() -> None:
             for trouble in state.troubles(_signatures.get(ObjectKey.of(surface))):
                 print(f"Limit Surface: {trouble.text}")
     for ob in bpy.context.scene.objects:
-        if live_modifier_of(ob) and (text := live_kept.trouble_in_file(ob)):
-            print(f"Limit Surface: {text}")
+        if live_modifier_of(ob):
+            text = live_kept.trouble(ob) or live_kept.trouble_in_file(ob)
+            if text:
+                print(f"Limit Surface: {text}")
 
 
 _HANDLERS = (

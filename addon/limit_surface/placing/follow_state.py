@@ -29,7 +29,7 @@ from .followers import (
 
 @dataclass(frozen=True)
 class Trouble:
-    """Something that has gone wrong, and the operator that puts it right."""
+    """Something that has gone wrong, and the operator that puts it right, if it is known."""
 
     text: str
     remedy: str

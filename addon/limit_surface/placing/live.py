@@ -14,7 +14,7 @@ from ..nodes import groups
 from ..nodes.follow import SURFACE
 from ..reading import private_scene
 from ..reading.users import objects_using
-from . import live_attributes, live_surface, live_thing
+from . import live_attributes, live_source, live_surface, live_thing
 from . import live_kept as kept
 from .followers import sharers
 from .live_chains import Chains, Followers
@@ -157,7 +157,7 @@ def _read_changed_ones_anew(
 
 def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """Makes sure that the shape at rest is that of the points as they are now. Raises CageError or
-    MeshError where there is no surface.
+    MeshError where there is no surface, and StaleFacesError where it has other faces.
     """
     surface = surface_of(ob)
     if surface is not None:
@@ -258,6 +258,7 @@ def _pose(
     frame = depsgraph.scene.frame_float
 
     def pose(ob: bpy.types.Object) -> None:
+        live_source.check(ob, surface, on.source, on.signature)
         check_sharers(ob, surface, depsgraph)
         thing = kept.thing(ob)
         if thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame):
@@ -291,6 +292,7 @@ def _take_up(
         followers.setdefault(surface, [ob])
         return Chains(followers).needed_by(surface)
 
+    live_source.check(ob, surface, on.source, on.signature)
     edits = Edits(ob, kept.thing(ob), on, needed)
     edits.take_up(surface, depsgraph, lambda: _matrix(ob, surface, depsgraph))
 

@@ -103,8 +103,9 @@ def leave(data: bpy.types.ID) -> None:
     for name in (ids.LIVE_FINGERPRINT, *(rest_name(name) for name in followed)):
         if name in data.attributes:
             data.attributes.remove(data.attributes[name])
-    if ids.LIVE_WRITTEN in data:
-        del data[ids.LIVE_WRITTEN]
+    for name in (ids.LIVE_WRITTEN, ids.LIVE_SOURCE):
+        if name in data:
+            del data[name]
     tag(data)
 
 

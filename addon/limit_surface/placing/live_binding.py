@@ -16,7 +16,16 @@ from ..nodes.follow import SURFACE
 from ..nodes.live import FOLLOW_LIVE
 from ..reading import cage
 from ..tasks.piecewise_job import Pieces, at_once
-from . import followers, following, live, live_attributes, live_surface, live_thing, newcomers
+from . import (
+    followers,
+    following,
+    live,
+    live_attributes,
+    live_source,
+    live_surface,
+    live_thing,
+    newcomers,
+)
 from .places import Places
 from .relocation import Relocation
 from .unbinding import Unbinding
@@ -92,7 +101,7 @@ class LiveRequest:
             if modifier is None:
                 modifier = groups.add_modifier(ob, FOLLOW_LIVE, place=places.get(ob, 0))
             groups.set_input(modifier, SURFACE, self._surface)
-            ob.data[ids.SIGNATURE] = self._signature
+            live_source.store(ob.data, self._surface, self._signature)
         depsgraph = context.evaluated_depsgraph_get()
         for ob in self._things:
             if live_attributes.missing(ob.data):
@@ -138,8 +147,8 @@ def prepare_rebinding(things: Sequence[bpy.types.Object], depsgraph: bpy.types.D
     for ob in things:
         try:
             live.take_up_edits(ob, depsgraph)
-        except live_surface.errors:
-            continue  # its faces do not exist any more, so that it has not been posed since
+        except live_surface.unfit:
+            continue  # its faces are not there any more, so that it has not been posed since
 
 
 def finish_rebinding(
@@ -154,7 +163,7 @@ def finish_rebinding(
     following.ensure_capture(surface)
     live.read_anew(surface)
     for ob in things:
-        ob.data[ids.SIGNATURE] = signature
+        live_source.store(ob.data, surface, signature)
     depsgraph = context.evaluated_depsgraph_get()
     for ob in things:
         live.admit(ob, surface, depsgraph)

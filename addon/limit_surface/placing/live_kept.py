@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import bpy
 
@@ -22,8 +23,15 @@ from .live_thing import LiveThing
 
 _surfaces: dict[ObjectKey, LiveSurface] = {}
 _things: dict[tuple[str, str, str | None], LiveThing] = {}  # by type, name and library
+
+
+class _Reason(NamedTuple):
+    text: str
+    remedy: str  # the operator that helps, if it is known
+
+
 #: The reasons why objects do not follow at present
-_troubles: dict[ObjectKey, str] = {}
+_troubles: dict[ObjectKey, _Reason] = {}
 _moves = 0
 
 
@@ -53,13 +61,18 @@ def _is_edited(kind: str, name: str, library: str | None) -> bool:
 def trouble(ob: bpy.types.Object) -> str:
     """Returns the reason why the object, or a part of it, does not follow at present."""
     kept = thing(ob)
+    return _reason(ob).text or _lost_frames(ob, kept.lost_frames) or _added(ob, kept.added)
+
+
+def remedy(ob: bpy.types.Object) -> str:
+    """Returns the operator that puts this right, if it is known."""
+    return _reason(ob).remedy
+
+
+def _reason(ob: bpy.types.Object) -> _Reason:
     # of objects that share their data one is posed, for all
-    reasons = (_troubles.get(ObjectKey.of(each), "") for each in (ob, *sharers(ob)))
-    return (
-        next(filter(None, reasons), "")
-        or _lost_frames(ob, kept.lost_frames)
-        or _added(ob, kept.added)
-    )
+    reasons = (_troubles.get(ObjectKey.of(each)) for each in (ob, *sharers(ob)))
+    return next(filter(None, reasons), _Reason("", ""))
 
 
 def trouble_in_file(ob: bpy.types.Object) -> str:
@@ -137,13 +150,13 @@ def each(
             work(ob)
         except (RefusalError, ValueError, MemoryError) as error:
             reason = native.sentence(error, partial(element_called, ob))
-            refuse([ob], reason or "There is not enough memory")
+            refuse([ob], reason or "There is not enough memory", getattr(error, "remedy", ""))
         else:
             for well in (ob, *sharers(ob)):
                 _troubles.pop(ObjectKey.of(well), None)
             yield ob
 
 
-def refuse(things: Sequence[bpy.types.Object], reason: str) -> None:
+def refuse(things: Sequence[bpy.types.Object], reason: str, remedy: str = "") -> None:
     for ob in things:
-        _troubles[ObjectKey.of(ob)] = reason
+        _troubles[ObjectKey.of(ob)] = _Reason(reason, remedy)

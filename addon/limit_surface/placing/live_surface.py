@@ -20,6 +20,7 @@ from ..errors import CageError
 from ..nodes import groups
 from ..reading import attributes, cage, private_scene, rules
 from ..tasks.unchanged import faces_of
+from . import following, live_source
 
 if TYPE_CHECKING:
     import limitsurf
@@ -48,12 +49,15 @@ class LiveSurface:
 
     limit: limitsurf.LimitSurface  # there is one once it has been read
     pose: SurfacePose  # that of the limit surface
+    signature: str  # of the faces and rules of the limit surface
+    source: str  # what these faces come from
 
     def __init__(self) -> None:
         self.version = 0
         self._is_behind = True  # something has moved since the pose was read, or there is none yet
         self._checksums: tuple[object, ...] | None = None
         self._faces: tuple[int, int, int] | None = None  # what tells the mesh's faces from others
+        self._mesh = 0  # the number of the mesh that has these faces
 
     def look_at_faces(self) -> None:
         """Is called when somebody may have changed the mesh. The checksums of *Limit Capture* do
@@ -100,9 +104,11 @@ class LiveSurface:
         captured: _Captured | None,
     ) -> None:
         frame = depsgraph.scene.frame_float
+        if self._mesh != ob.data.session_uid:
+            self._faces, self._mesh = None, ob.data.session_uid
+        if self._faces is None and not ob.data.is_editmode:
+            self._faces = faces_of(ob.data)
         if captured is not None:
-            if self._faces is None and not ob.data.is_editmode:
-                self._faces = faces_of(ob.data)
             captured = captured._replace(checksums=(*captured.checksums, self._faces))
         is_other = captured is None or captured.checksums != self._checksums
         if is_other and private_scene.is_barred() and self.version:
@@ -115,7 +121,8 @@ class LiveSurface:
             self._checksums = None
             # without the modifier the surface is read after each update
             found = cage.read(ob, depsgraph, puts_back=captured is not None)
-            self.limit = found.surface()
+            self.limit, self.signature = found.surface(), following.signature(found)
+        self.source = live_source.source_of(ob, self._faces)
         self._is_behind = False
         if captured is None:
             self.pose = SurfacePose(frame, self.limit.positions.copy(), None)
@@ -212,3 +219,5 @@ def _captured(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> _Captured | None:
 
 #: What may be raised where a surface cannot be read
 errors: tuple[type[Exception], ...] = (CageError, *native.errors)
+#: These, and what is raised where it can be read, but has other faces than things are bound to
+unfit: tuple[type[Exception], ...] = (live_source.StaleFacesError, *errors)
