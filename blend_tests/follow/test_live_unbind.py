@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Things that cease to follow live, and strands that begin to."""
 
+import bmesh
 import bpy
 import live_scenes
 import numpy as np
@@ -105,3 +106,66 @@ def test_a_surface_in_another_scene_is_refused_before_anything_is_made():
     with pytest.raises(RuntimeError):
         bpy.ops.object.limit_hair_add(follow="LIVE")
     assert len(bpy.data.objects) == objects
+
+
+def without_faces(ob: bpy.types.Object) -> None:
+    ob.shape_key_clear()
+    ob.data.clear_geometry()
+
+
+def with_fewer_faces(ob: bpy.types.Object) -> None:
+    ob.shape_key_clear()
+    edited = bmesh.new()
+    edited.from_mesh(ob.data)
+    bmesh.ops.delete(edited, geom=list(edited.faces)[2:4], context="FACES_ONLY")
+    edited.to_mesh(ob.data)
+    edited.free()
+
+
+def deleted(ob: bpy.types.Object) -> None:
+    bpy.data.objects.remove(ob)
+
+
+LOSSES = [without_faces, with_fewer_faces, deleted]
+
+
+@pytest.mark.parametrize("lose", LOSSES)
+def test_hair_stays_where_it_is_shown_when_its_faces_are_gone(hair, lose):
+    world = hair.matrix_world.copy()
+    lose(bpy.data.objects["Cross"])
+    hair.matrix_world = world
+    bpy.context.scene.frame_set(7)
+    shown = scenes.strands(hair).copy()
+    assert bpy.ops.object.limit_unbind(shape="SHOWN") == {"FINISHED"}
+    assert is_bare(hair)
+    np.testing.assert_array_equal(scenes.strands(hair), shown)
+    assert (attributes.read(hair.data, ids.FACE) == -1).all()
+    if lose is with_fewer_faces:
+        follow(hair)  # at the closest points, without moving
+        np.testing.assert_allclose(scenes.strands(hair), shown, atol=1e-5)
+
+
+@pytest.mark.parametrize("lose", LOSSES)
+def test_hair_goes_back_to_rest_when_its_faces_are_gone(hair, lose):
+    rest = live_scenes.rest(hair).copy()
+    lose(bpy.data.objects["Cross"])
+    bpy.context.scene.frame_set(7)
+    assert bpy.ops.object.limit_unbind(shape="REST") == {"FINISHED"}
+    assert is_bare(hair)
+    np.testing.assert_array_equal(scenes.strands(hair), rest)
+
+
+def test_strands_lose_their_places_whose_faces_are_missing_in_a_frame():
+    ob = deforming("cross")
+    build = ob.modifiers.new("Build", "BUILD")
+    build.frame_start, build.frame_duration = 1, 20
+    ob.modifiers.move(ob.modifiers.find(build.name), 0)
+    bpy.context.scene.frame_set(30)
+    hair = scenes.add_hair(ob, follow="LIVE")
+    bpy.context.scene.frame_set(12)
+    shown, faces = scenes.strands(hair).copy(), attributes.read(hair.data, ids.FACE)
+    assert bpy.ops.object.limit_unbind(shape="SHOWN") == {"FINISHED"}
+    np.testing.assert_array_equal(scenes.strands(hair), shown)
+    left = attributes.read(hair.data, ids.FACE)
+    assert 0 < (left == -1).sum() < len(left)
+    np.testing.assert_array_equal(left[left != -1], faces[left != -1])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
@@ -187,12 +188,13 @@ def with_live_sharers(things: Sequence[bpy.types.Object]) -> list[bpy.types.Obje
 
 def end(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """Ends that the object, and all others that share its data, follow live. Their points are then
-    at rest.
+    at rest. Edits that were made after the surface was lost, or has got other faces, are lost.
     """
     if followers.live_modifier_of(ob) is None:
         return
     if not live_attributes.missing(ob.data):
-        live.take_up_edits(ob, depsgraph)
+        with suppress(*live_surface.unfit):
+            live.take_up_edits(ob, depsgraph)
         live_attributes.stop(ob.data)
     for user in with_sharers([ob]):
         modifier = followers.live_modifier_of(user)

@@ -102,6 +102,11 @@ class Places:
         rows = np.arange(len(new))
         return cls(len(new), rows, new.face, new.uv.astype(np.float64))
 
+    def without(self, rows: np.ndarray) -> Places:
+        """Returns the places of all other elements."""
+        others = ~np.isin(self.rows, rows)
+        return Places(self.count, self.rows[others], self.face[others], self.uv[others])
+
     @property
     def resting(self) -> int:
         return self.count - len(self.rows)

@@ -74,7 +74,7 @@ class Unbinding:
             depsgraph = context.evaluated_depsgraph_get()
             surface = followers.surface_of(ob)
             if surface not in posed:
-                posed[surface] = _posed(surface, depsgraph)
+                posed[surface] = posed_if_there(surface, depsgraph)
             self._frozen.append((yield from _freeze(ob, posed[surface], depsgraph)))
 
     def write(self, _depsgraph: bpy.types.Depsgraph | None = None) -> str:
@@ -118,7 +118,9 @@ def _check_own_data(ob: bpy.types.Object) -> None:
         )
 
 
-def _posed(surface: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> PosedSurface | None:
+def posed_if_there(
+    surface: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph
+) -> PosedSurface | None:
     """Returns the surface as it is now; None where there is none any more."""
     try:
         return PosedSurface(cage.read(surface, depsgraph)) if surface else None
@@ -130,7 +132,7 @@ def shown_now(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str,
     """Returns the attributes of what follows by nodes as they would be if it was unbound as shown.
     Raises RefusalError where that is impossible.
     """
-    posed = _posed(followers.surface_of(ob), depsgraph)
+    posed = posed_if_there(followers.surface_of(ob), depsgraph)
     frozen: _Frozen = at_once(_freeze(ob, posed, depsgraph))
     return frozen.values
 
