@@ -203,3 +203,42 @@ def test_only_in_object_mode():
     refused_message = "Only available in Object Mode"
     with pytest.raises(RuntimeError, match=refused_message):
         bpy.ops.object.limit_unbind()
+
+
+@pytest.mark.parametrize("mode", ["NODES", "LIVE"])
+def test_copies_of_a_surface_lose_limit_capture(mode):
+    ob = scenes.grid_with_holes()
+    scenes.add_subsurf(ob)
+    hair = scenes.add_hair(ob, follow=mode)
+    bpy.ops.object.select_all(action="DESELECT")
+    copies = [ob.copy() for _ in range(2)]
+    for copy in copies:
+        bpy.context.collection.objects.link(copy)
+        copy.select_set(True)
+        assert ids.CAPTURE_GROUP in copy.modifiers
+    scenes.activate(copies[0])
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    for copy in copies:
+        assert [modifier.type for modifier in copy.modifiers] == ["SUBSURF"]
+    assert not bpy.ops.object.limit_unbind.poll()
+    assert ids.CAPTURE_GROUP in ob.modifiers
+    assert hair.modifiers
+
+
+def test_the_capture_of_an_overridden_surface_stays(tmp_path):
+    ob = deforming("cross")
+    scenes.add_hair(ob, follow="LIVE")
+    (ob,) = scenes.overridden(tmp_path, ob)
+    scenes.activate(ob)
+    ob.select_set(True)
+    assert not bpy.ops.object.limit_unbind.poll()
+    assert ids.CAPTURE_GROUP in ob.modifiers
+
+
+def test_tables_and_capture_of_deleted_hair_are_removed():
+    ob = deforming("cross")
+    for mode in ("NODES", "LIVE"):
+        bpy.data.objects.remove(scenes.add_hair(ob, follow=mode))
+        assert ids.CAPTURE_GROUP in ob.modifiers
+        unbind(ob)
+        assert traces() == set()

@@ -7,6 +7,7 @@ from bpy.props import EnumProperty
 from .. import ids
 from ..placing.binding_operator import rely_on_bound
 from ..placing.followers import live_modifier_of
+from ..placing.following import unused_captures
 from ..placing.live_unbinding import LiveUnbinding
 from ..placing.unbinding import Unbinding, leftovers_of, remove_leftovers
 from ..tasks import polling
@@ -14,7 +15,7 @@ from ..tasks.piecewise_job import Pieces, PiecewiseJob
 from ..tasks.properties import draw_summary
 from ..tasks.watched_operator import WatchedOperator
 from .children_unbinding import ChildrenUnbinding
-from .subjects import children_to_unbind, chosen_followers
+from .subjects import children_to_unbind, chosen_followers, selected
 
 
 class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
@@ -42,7 +43,7 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
             context,
             lambda: (
                 bool(chosen_followers(context) or children_to_unbind(context))
-                or _leftovers(context)
+                or bool(_with_leftovers(context))
             ),
             "Select hair or points that follow a limit surface, or live children",
         )
@@ -65,7 +66,7 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
         live = [ob for ob in things if live_modifier_of(ob)]
         by_nodes = [ob for ob in things if ob not in live]
         if not things and not children:
-            return remove_leftovers(context.active_object)
+            return "\n".join(map(remove_leftovers, _with_leftovers(context)))
         unbindings: list[Unbinding | LiveUnbinding | ChildrenUnbinding] = []
         if children:  # before their guides are unbound
             unbindings.append(ChildrenUnbinding(children))
@@ -85,7 +86,10 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
         draw_summary(self.layout, self.summary)
 
 
-def _leftovers(context: bpy.types.Context) -> bool:
-    """Tells whether the active mesh has tables that nothing reads any more."""
+def _with_leftovers(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Returns the active mesh if there are tables that nothing reads any more, and the selected
+    meshes that have *Limit Capture* although nothing follows them, as copies of a surface have.
+    """
+    meshes = [ob for ob in selected(context) if ob.type == "MESH"]
     active = context.active_object
-    return active is not None and active.type == "MESH" and bool(leftovers_of(active))
+    return [ob for ob in meshes if unused_captures(ob) or (ob == active and leftovers_of(ob))]

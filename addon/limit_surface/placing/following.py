@@ -297,19 +297,30 @@ def _check_capture(surface: bpy.types.Object) -> None:
         )
 
 
-def remove_unused_capture(surface: bpy.types.Object) -> None:
-    """Removes *Limit Capture* from a surface that nothing follows any more. That of a library stays
-    on its overrides.
+def unused_captures(surface: bpy.types.Object) -> list[bpy.types.NodesModifier]:
+    """Returns the modifiers *Limit Capture* that can be removed from a surface because nothing
+    follows it: all that did has been unbound or deleted, or it is a copy of another surface.
     """
+    captures = [
+        modifier
+        for modifier in groups.modifiers(surface, ids.CAPTURE_GROUP)
+        if not overrides.is_of_library(modifier)
+    ]
     if (
-        surface.is_editable
-        and not tables.all_of_surface(surface)
-        and not followers_of(surface)  # library overrides have tables of their own
-        and not live_followers_of(surface)
+        not captures
+        or not surface.is_editable
+        or tables.all_of_surface(surface)
+        or followers_of(surface)  # library overrides have tables of their own
+        or live_followers_of(surface)
     ):
-        for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):
-            if not overrides.is_of_library(modifier):
-                surface.modifiers.remove(modifier)
+        return []
+    return captures
+
+
+def remove_unused_capture(surface: bpy.types.Object) -> None:
+    """Removes *Limit Capture* from a surface that nothing follows any more."""
+    for modifier in unused_captures(surface):
+        surface.modifiers.remove(modifier)
 
 
 def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:

@@ -233,12 +233,20 @@ def leftovers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def remove_leftovers(surface: bpy.types.Object) -> str:
-    """Removes those tables, and returns a sentence for the report."""
-    leftovers = leftovers_of(surface)
+    """Removes those tables, and *Limit Capture* if nothing follows the surface. Returns a sentence
+    for the report.
+    """
+    leftovers, had_capture = (
+        leftovers_of(surface),
+        any(groups.modifiers(surface, ids.CAPTURE_GROUP)),
+    )
     count, of_tiles = len(leftovers), [ob for ob in leftovers if tables.surface_of(ob)]
     _remove_unused(of_tiles, {surface})
-    were = counted(count, "hidden tables", "was", "were")
-    return f"Nothing follows {surface.name}: {were} removed"
+    has_capture = any(groups.modifiers(surface, ids.CAPTURE_GROUP))
+    removed = [counted(count, "hidden tables")] if count else []
+    if had_capture and not has_capture:
+        removed.append(f"the modifier {ids.CAPTURE_GROUP}")
+    return f"Nothing follows {surface.name}. Removed: {', '.join(removed)}"
 
 
 def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Object]) -> None:
