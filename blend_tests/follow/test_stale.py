@@ -6,6 +6,7 @@ from unittest.mock import MagicMock
 
 import bpy
 import follow_truth
+import live_scenes
 import numpy as np
 import pytest
 import scenes
@@ -13,6 +14,7 @@ from follow_scenes import check_hair, deforming, follow, look
 from limit_surface import ids
 from limit_surface.follow import stale
 from limit_surface.follow.panel import VIEW3D_PT_limit_follow
+from limit_surface.placing import live_kept
 from limit_surface.placing.follow_state import State
 
 
@@ -35,6 +37,11 @@ def move_capture(ob: bpy.types.Object) -> None:
 
 def disable_capture(ob: bpy.types.Object) -> None:
     ob.modifiers[ids.CAPTURE_GROUP].show_viewport = False
+
+
+def subdivide_first(ob: bpy.types.Object) -> None:
+    scenes.add_subsurf(ob)
+    ob.modifiers.move(len(ob.modifiers) - 1, 0)
 
 
 BREAKS = {
@@ -218,6 +225,31 @@ def panel(ob: bpy.types.Object) -> tuple[str, list[str]]:
     VIEW3D_PT_limit_follow.draw(SimpleNamespace(layout=layout), bpy.context)
     lines = [call.kwargs["text"] for call in layout.label.call_args_list]
     return " ".join(lines), [call.args[0] for call in layout.operator.call_args_list]
+
+
+@pytest.mark.parametrize("breaks", [remove_capture, disable_capture, move_capture, subdivide_first])
+def test_live_hair_follows_wherever_limit_capture_is(breaks):
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow="LIVE")
+    breaks(ob)
+    for frame in (1, 20):
+        bpy.context.scene.frame_set(frame)
+        live_scenes.check_hair(ob, hair)
+        assert live_kept.trouble(hair) == ""
+    text, offered = panel(ob)
+    assert f"Holes: the modifier {ids.CAPTURE_GROUP} " in text
+    if breaks in (move_capture, subdivide_first):
+        assert text.endswith("is not directly before the Subdivision Surface modifier")
+    assert offered[0] == ids.FOLLOW
+    bpy.ops.object.select_all(action="DESELECT")
+    ob.select_set(True)
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_follow() == {"FINISHED"}
+    text, offered = panel(ob)
+    assert ids.CAPTURE_GROUP not in text
+    assert len(offered) == 3
+    bpy.context.scene.frame_set(9)
+    live_scenes.check_hair(ob, hair)
 
 
 def test_the_panel_names_what_follows_and_what_is_wrong():

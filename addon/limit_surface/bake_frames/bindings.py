@@ -10,7 +10,7 @@ from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..nodes import children, groups
 from ..nodes.follow import TILES
-from ..placing import all_tiles, followers, following, live, live_children, live_kept
+from ..placing import all_tiles, capture_place, followers, following, live, live_children, live_kept
 from ..placing.follow_state import State, Trouble
 from ..reading import attributes, cage, modifier_kinds, rules
 
@@ -75,15 +75,16 @@ def _check_render(ob: bpy.types.Object) -> None:
         return
     before = surface.modifiers[: rules.place_of_subsurf(surface)]
     hands_on = any(groups.modifiers(surface, ids.CAPTURE_GROUP))
+    hands_on = hands_on and not capture_place.hands_on_another_mesh(surface)
     for modifier in before:
         if modifier.show_viewport == modifier.show_render:
             continue
         if not hands_on and followers.live_modifier_of(ob) is not None:
             raise RefusalError(
                 f"{ob.name} follows {surface.name} as the viewport shows it, because "
-                f"{surface.name} has no modifier {ids.CAPTURE_GROUP}, and files of this format "
-                f"hold what renders show: enable the modifier {modifier.name} in both, or in "
-                "neither, or use --format npz"
+                f"{surface.name} has no modifier {ids.CAPTURE_GROUP} directly before the "
+                "subdivision, and files of this format hold what renders show: enable the modifier "
+                f"{modifier.name} in both, or in neither, or use --format npz"
             )
         if modifier.type not in modifier_kinds.DEFORMING:
             raise RefusalError(

@@ -5,7 +5,7 @@ import bpy
 
 from .. import ids, native
 from ..counting import by_count, counted
-from ..placing import live, live_kept
+from ..placing import capture_place, live, live_kept
 from ..placing.follow_state import State, Trouble
 from ..placing.followers import anything_follows, is_placed, live_followers_of, surface_of
 from ..tasks import wrapped_text
@@ -95,9 +95,15 @@ def _edited_surface(thing: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def _live_troubles(things: list[bpy.types.Object]) -> list[Trouble]:
-    """Returns why things do not follow live, other than that their surface is in Edit Mode."""
+    """Returns why things do not follow live, other than that their surface is in Edit Mode, and
+    what makes them follow slowly.
+    """
     still = [ob for ob in things if _edited_surface(ob) is None]
     found = [Trouble(live_kept.trouble(ob), live_kept.remedy(ob)) for ob in still]
+    for surface in dict.fromkeys(map(live.surface_of, still)):
+        # with a state, it is named among the troubles of that
+        if surface is not None and State.of(surface) is None:
+            found.append(Trouble(capture_place.obstacle(surface), ids.FOLLOW))
     return [trouble for trouble in found if trouble.text]
 
 

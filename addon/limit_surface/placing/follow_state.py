@@ -14,8 +14,7 @@ from .. import ids
 from ..counting import by_count, counted
 from ..nodes import groups
 from ..nodes.follow import TILES
-from ..reading import rules
-from . import all_tiles, following, live_children, mending, seals, tables
+from . import all_tiles, capture_place, following, live_children, mending, seals, tables
 from .followers import (
     followers_of,
     holder_of,
@@ -104,9 +103,7 @@ class State:
             elif of != self.surface:
                 whose = of.name if of else "a surface that was deleted"
                 yield Trouble(f"{ob.name} reads the tables of {whose}", ids.FOLLOW)
-        obstacle = _capture_obstacle(self.surface)
-        if obstacle:
-            text = f"{self.surface.name}: the modifier {ids.CAPTURE_GROUP} {obstacle}"
+        if text := capture_place.obstacle(self.surface):
             yield Trouble(text, remedy)
         if self.samples is not None:
             if mending.is_broken(self.samples):
@@ -176,21 +173,3 @@ def surfaces() -> list[bpy.types.Object]:
 def _tables_of(followers: list[bpy.types.Object]) -> list[bpy.types.Object]:
     read = dict.fromkeys(groups.get_input(modifier_of(ob), TILES) for ob in followers)
     return [table for table in read if table is not None]
-
-
-def _capture_obstacle(surface: bpy.types.Object) -> str:
-    """Returns why the surface does not hand on its control mesh, or None."""
-    capture = next(groups.modifiers(surface, ids.CAPTURE_GROUP), None)
-    if capture is None:
-        return "was deleted"
-    if not (capture.show_viewport and capture.show_render):
-        return "is disabled"
-    subsurf = rules.find_subsurf(surface)
-    here = surface.modifiers.find(capture.name)
-    if subsurf is None:
-        later = [m for m in surface.modifiers[here + 1 :] if m.show_viewport or m.show_render]
-        return "is not the last modifier, as it must be without a subdivision" if later else ""
-    there = surface.modifiers.find(subsurf.name)
-    if here > there or any(m.show_viewport for m in surface.modifiers[here + 1 : there]):
-        return "is not directly before the Subdivision Surface modifier"
-    return ""

@@ -20,7 +20,7 @@ from ..errors import CageError
 from ..nodes import groups
 from ..reading import attributes, cage, private_scene, rules
 from ..tasks.unchanged import faces_of
-from . import following, live_source
+from . import capture_place, following, live_source
 
 if TYPE_CHECKING:
     import limitsurf
@@ -157,9 +157,11 @@ def _at(frame: float) -> Callable[[bpy.types.Object, bpy.types.Scene], None]:
 
 
 def _evaluated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Captured | None:
-    """Returns what the depsgraph has evaluated last."""
+    """Returns what the depsgraph has evaluated last, if it is the control mesh."""
     evaluated = ob.evaluated_get(depsgraph)
     if not evaluated.is_evaluated or evaluated.type != "MESH":
+        return None
+    if capture_place.hands_on_another_mesh(ob):
         return None
     geometry, mesh = least_subdivided(evaluated)  # the mesh lives as long as the geometry
     return None if mesh is None else _captured(ob, mesh)
