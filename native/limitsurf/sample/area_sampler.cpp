@@ -92,9 +92,8 @@ void AreaSampler::Data::checkLimits(const DensityLimits& limits,
     return;
   }
   if (limits.faceCount() != surface.faceCount()) {
-    throw std::invalid_argument("there are density limits for " +
-                                std::to_string(limits.faceCount()) + " faces; the surface has " +
-                                std::to_string(surface.faceCount()));
+    throw std::invalid_argument("density_limits are for " + std::to_string(limits.faceCount()) +
+                                " faces; the surface has " + std::to_string(surface.faceCount()));
   }
   double largest = 0;
   for (std::size_t face = 0; face < has_surface.size(); ++face) {

@@ -11,6 +11,9 @@
 namespace limitsurf {
 namespace {
 
+/// Weights of vertices that go beyond this are divided by a power of two.
+constexpr double kLargestWeight = 1e100;
+
 bool isWeight(double value) { return value >= 0 && std::isfinite(value); }
 
 }  // namespace
@@ -40,7 +43,10 @@ Density::Density(const LimitSurface& surface, const Eigen::VectorXd& weights, in
     }
   }
   corners_.resize(4 * base_face.size(), 0);
-  const DataRows values = surface.varying(weights, threads).evaluate(at, {}, threads).value;
+  // Only ratios matter, and values of data must not be that large.
+  const double largest = vertices > 0 ? weights.maxCoeff() : 0;
+  const double unit = std::ldexp(1., largest > kLargestWeight ? std::ilogb(largest) : 0);
+  const DataRows values = surface.varying(weights / unit, threads).evaluate(at, {}, threads).value;
   for (std::size_t i = 0; i < at.size(); ++i) {
     // A sum of weights that are all 0 may round to less than 0.
     corners_[4 * static_cast<std::size_t>(at[i].face) + i % 4] =
@@ -54,8 +60,9 @@ std::vector<double> Density::weights(Span<Location> at) const {
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (!isWeight(result[i])) {
       std::ostringstream message;
-      message << "density is " << result[i] << " at face " << at[i].face << ", (u, v) = ("
-              << at[i].u << ", " << at[i].v << "); it must be finite and at least 0";
+      message << "density is " << numberText(result[i]) << " at face " << at[i].face
+              << ", (u, v) = (" << at[i].u << ", " << at[i].v
+              << "); it must be finite and at least 0";
       throw std::invalid_argument(message.str());
     }
     if (limits_.areKnown() && result[i] > limits_.at(at[i])) {
@@ -75,6 +82,18 @@ std::string zeroEverywhereText(std::size_t count) {
   }
   return "density is 0 at all of " + std::to_string(count) +
          " locations: it is above 0 nowhere, or on too small a part of the surface";
+}
+
+std::string tooFewAcceptedText(std::size_t count, double largest, double limit) {
+  const std::string candidates = std::to_string(count) +
+                                 " candidates in succession, with densities "
+                                 "of up to " +
+                                 numberText(largest) + ", was accepted";
+  return limit > 0 ? "density_limits go up to " + numberText(limit) +
+                         ", too far above density: none of " + candidates
+                   : "density is too small on nearly all of the surface, compared with its largest "
+                     "value: none of " +
+                         candidates;
 }
 
 }  // namespace limitsurf

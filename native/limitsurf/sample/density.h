@@ -58,4 +58,9 @@ class Density {
 /// not be called, since all its limits are 0.
 std::string zeroEverywhereText(std::size_t count);
 
+/// The message for a function of which none of `count` candidates in succession was accepted:
+/// `largest` is the largest of their densities. `limit` is the largest limit, or 0 if there are
+/// none.
+std::string tooFewAcceptedText(std::size_t count, double largest, double limit);
+
 }  // namespace limitsurf

@@ -100,6 +100,8 @@ void Thinning::tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_o
   if (!limits_.areKnown()) {
     largest_ = std::max(largest_, largest_weight);
   }
+  rejected_ += at.size();
+  largest_rejected_ = std::max(largest_rejected_, largest_weight);
   for (std::size_t i = 0; i < open.size(); ++i) {
     Sample& sample = samples_[open[i]];
     for (std::size_t j = i * ahead; j < (i + 1) * ahead; ++j) {
@@ -110,7 +112,14 @@ void Thinning::tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_o
     }
     if (!sample.accepted(largest_)) {
       still_open.push_back(open[i]);
+    } else {
+      rejected_ = 0;
+      largest_rejected_ = 0;
     }
+  }
+  if (rejected_ >= kMostRejected) {
+    throw std::invalid_argument(
+        tooFewAcceptedText(rejected_, largest_rejected_, limits_.areKnown() ? unit_ : 0));
   }
 }
 

@@ -25,7 +25,8 @@ class Thinning {
   void pilot(Span<Location> at);
 
   /// One accepted candidate for each sample. Throws std::invalid_argument for a density that is
-  /// negative, not finite, larger than its limit, or 0 at the first kMostZeros candidates.
+  /// negative, not finite, larger than its limit, or 0 at the first kMostZeros candidates, and if
+  /// kMostRejected candidates in succession are rejected.
   std::vector<Location> run();
 
  private:
@@ -50,6 +51,9 @@ class Thinning {
 
   /// A density that is 0 at this many locations is taken to be 0 everywhere.
   static constexpr std::size_t kMostZeros = std::size_t{1} << 20;
+  /// Calls in which one candidate of a million is accepted succeed with near certainty; others
+  /// might not end within hours.
+  static constexpr std::size_t kMostRejected = std::size_t{1} << 25;
 
   const UniformCandidates& candidates_;
   const Density& density_;
@@ -61,6 +65,8 @@ class Thinning {
   double largest_;       // the largest weight that has been seen; 1 with limits
   bool is_zero_ = true;  // at all locations so far
   std::size_t asked_ = 0;
+  std::size_t rejected_ = 0;     // candidates since one was accepted
+  double largest_rejected_ = 0;  // the largest weight of these
 };
 
 }  // namespace limitsurf

@@ -42,7 +42,8 @@ called from time to time with the part of the work that is done, 0 to 1; an exce
 ends the call.
 
 Raises ValueError for a negative count, for a density that is negative, not finite, of another shape or
-0 everywhere, and for a surface without area. Cost: about 0.2 microseconds a location. The first call
+0 everywhere, for a function so far below its largest value or its limits that none of 33 million
+candidates in succession is accepted, and for a surface without area. Cost: about 0.2 microseconds a location. The first call
 builds a table that is kept until set_positions().
 
 density_limits, for a function alone, are numbers that it does not exceed: (f,) one for each Ptex face,

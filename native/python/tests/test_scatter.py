@@ -216,6 +216,32 @@ def test_limits_are_checked(cube, density, limits, message):
         cube.scatter_blue_noise(count=100, density=density, density_limits=limits)
 
 
+@pytest.mark.parametrize("count", [3, 5000])
+@pytest.mark.parametrize("limit", [1e12, 1e308])
+def test_limits_far_above_the_density(cube, count, limit):
+    def density(face, uv):
+        return np.full(len(face), 0.25)
+
+    with pytest.raises(ValueError, match="^density_limits go up to 1[e0].* up to 0.25, "):
+        cube.scatter_uniform(count, 1, density, density_limits=np.full(6, limit))
+
+
+def test_a_density_that_is_small_nearly_everywhere(cube):
+    def density(face, uv):
+        return np.where((face == 4) & (uv == 0.5).all(1), 1e12, 1.0)
+
+    with pytest.raises(ValueError, match="^density is too small on nearly all of the surface"):
+        cube.scatter_uniform(3, 1, density)
+
+
+def test_only_ratios_of_densities_matter(cube):
+    weights = np.arange(8.0)
+    expected = cube.scatter_uniform(50, 1, weights)
+    for unit in (2.0**-1000, 2.0**1000):
+        np.testing.assert_array_equal(cube.scatter_uniform(50, 1, unit * weights).uv, expected.uv)
+    assert len(cube.scatter_blue_noise(count=10, density=np.full(8, 1e308)).face) == 10
+
+
 def test_limits_do_not_change_blue_noise(cube):
     asked = []
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "limitsurf/interruption_point.h"
+#include "limitsurf/number_text.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area_sampler_data.h"
 #include "limitsurf/sample/blue_noise/crowding.h"
@@ -46,7 +47,7 @@ constexpr double kRadiusRounding = 1e-12;
 /// The part of the progress that sampling has; removing and sorting points have the rest.
 constexpr double kSamplingPart = 0.95;
 
-std::string text(double value) {
+std::string roundedText(double value) {
   std::ostringstream out;
   out << value;
   return out.str();
@@ -84,7 +85,8 @@ class BlueNoiseMaker {
     expected_ = pointsOf(radius);
     if (expected_ > kMostPoints || radius < DiscGrid::smallestRadius(box_)) {
       throw std::invalid_argument(
-          "radius is " + text(radius / patches_.scale()) + ": about " + text(expected_) +
+          "radius is " + numberText(radius / patches_.scale()) + ": about " +
+          roundedText(expected_) +
           " points would come out; the limit is 2147483647, so choose a larger radius");
     }
     std::vector<Location> at = sampled(radius).at;
@@ -298,7 +300,7 @@ BlueNoise AreaSampler::blueNoise(const BlueNoiseOptions& options, int threads,
     throw std::invalid_argument("exactly one of count and radius must be given");
   }
   if (options.radius && !(*options.radius > 0 && std::isfinite(*options.radius))) {
-    throw std::invalid_argument("radius is " + text(*options.radius) +
+    throw std::invalid_argument("radius is " + numberText(*options.radius) +
                                 "; it must be finite and above 0");
   }
   const std::int64_t count = options.count.value_or(1);
