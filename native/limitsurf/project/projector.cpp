@@ -38,6 +38,13 @@ Eigen::Vector4d perpendicular(const Eigen::RowVector4d& a, const Eigen::RowVecto
   return result;
 }
 
+/// The part of a unit vector that is perpendicular to another one, as a unit vector; 0 if the two
+/// are parallel.
+Eigen::RowVector4d unitWithout(const Eigen::RowVector4d& removed, const Eigen::RowVector4d& from) {
+  const Eigen::RowVector4d rest = from - from.dot(removed) * removed;
+  return rest.norm() > kSingular ? rest.normalized().eval() : Eigen::RowVector4d::Zero().eval();
+}
+
 }  // namespace
 
 void checkFinite(const Eigen::Matrix4d& matrix, const char* name) {
@@ -90,7 +97,12 @@ Projector::Projector(const Eigen::Matrix4d& matrix, const LimitSurface& surface)
   for (int i = 0; i < 4; ++i) {
     rows.row(i) = rows.row(i).stableNormalized().eval();
   }
-  const Eigen::Vector4d eye = perpendicular(rows.row(0), rows.row(1), rows.row(3));
+  Eigen::Vector4d eye = perpendicular(rows.row(0), rows.row(1), rows.row(3));
+  if (!(eye.norm() > kSingular)) {
+    // So it is, too, where the surface lies far beside all that the matrix shows.
+    const Eigen::RowVector4d depth = rows.row(3);
+    eye = perpendicular(unitWithout(depth, rows.row(0)), unitWithout(depth, rows.row(1)), depth);
+  }
   if (!(eye.norm() > kSingular)) {
     refuseSingular("matrix");
   }

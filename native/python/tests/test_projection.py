@@ -435,6 +435,16 @@ BAD_OPTIONS = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize("far", [0, 1e7, 1e9, 1e12])
+def test_surfaces_far_beside_what_a_projector_shows(far):
+    positions, faces = shapes.grid(20, 20)
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions + far, faces))
+    uv_map = surface.vertex_data(positions[:, :2] / 20)
+    matrix = np.diag([0.025, 0.025, -0.005, 1])
+    seen = surface.project(uv_map, [0, 200], [[0.5, 0.5]] * 2, matrix, TEXEL)
+    assert (seen.weight > 0).all() == (far == 0)
+
+
 @pytest.mark.parametrize("message", sorted(BAD_OPTIONS))
 def test_options_without_meaning(sheet, message):
     surface, uv_map = sheet
