@@ -96,6 +96,8 @@ def _complaint(kind: str, allowed: tuple[int, int], value: object) -> str | None
         kind = kind.removesuffix(OR_NONE)
         if value is None:
             return None
+    if kind in (INTEGER, REAL) and _is_bool(value):
+        return "an integer" if kind == INTEGER else "a number"
     if kind == INTEGER:
         try:
             number = operator.index(value)  # type: ignore[arg-type]
@@ -116,7 +118,7 @@ def _complaint(kind: str, allowed: tuple[int, int], value: object) -> str | None
             return f"{'an' if wanted[0] in 'AEIOU' else 'a'} {wanted}"
     if kind == "str" and not isinstance(value, str | bytes):
         return "a string"
-    if kind == "bool" and not _has(value, "__bool__"):
+    if kind == "bool" and not isinstance(value, bool | np.bool_):
         return "True or False"
     return None
 
@@ -135,6 +137,11 @@ def _complaint_of_real(value: object) -> str | None:
     except OverflowError:
         return "a number below 1.8e308"
     return None
+
+
+def _is_bool(value: object) -> bool:
+    of_array = isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind == "b"
+    return isinstance(value, bool | np.bool_) or of_array
 
 
 def _has(value: object, method: str) -> bool:

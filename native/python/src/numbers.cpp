@@ -11,11 +11,17 @@ bool isMasked(const py::handle& object) {
   return PyObject_IsInstance(object.ptr(), masked_array) == 1;
 }
 
+bool isBool(const py::handle& object) {
+  static PyObject* const numpy_bool =
+      py::object(py::module_::import("numpy").attr("bool_")).release().ptr();  // for good
+  return PyBool_Check(object.ptr()) || PyObject_IsInstance(object.ptr(), numpy_bool) == 1;
+}
+
 py::object integerOf(const py::handle& object) {
   if (!object || PyLong_CheckExact(object.ptr())) {
     return py::reinterpret_borrow<py::object>(object);
   }
-  if (PyFloat_CheckExact(object.ptr()) || isMasked(object)) {
+  if (PyFloat_CheckExact(object.ptr()) || isBool(object) || isMasked(object)) {
     return {};
   }
   py::object number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
@@ -33,8 +39,12 @@ py::object realOf(const py::handle& object) {
     return py::reinterpret_borrow<py::object>(object);
   }
   // PyNumber_Float() reads texts, too.
-  if (PyNumber_Check(object.ptr()) == 0 || isMasked(object) ||
-      (py::isinstance<py::array>(object) && py::reinterpret_borrow<py::array>(object).ndim() > 0)) {
+  if (PyNumber_Check(object.ptr()) == 0 || isBool(object) || isMasked(object)) {
+    return {};
+  }
+  if (const auto array = py::reinterpret_borrow<py::object>(object);
+      py::isinstance<py::array>(array) &&
+      (py::array(array).ndim() > 0 || py::array(array).dtype().kind() == 'b')) {
     return {};
   }
   py::object number = py::reinterpret_steal<py::object>(PyNumber_Float(object.ptr()));

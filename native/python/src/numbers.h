@@ -14,13 +14,17 @@ namespace limitsurf::python {
 /// Whether an object is a masked array of numpy: its mask would be lost.
 bool isMasked(const pybind11::handle& object);
 
+/// Whether an object is True or False, of Python or of numpy.
+bool isBool(const pybind11::handle& object);
+
 /// What an object gives as an integer (its __index__(), which 2.7 does not have, of whatever type);
-/// a null object for all else, and for masked arrays. Another error than TypeError is thrown.
+/// a null object for all else, for booleans and for masked arrays. Another error than TypeError is
+/// thrown.
 pybind11::object integerOf(const pybind11::handle& object);
 
 /// What an object that is a number gives as a float (its __float__()); a null object for all else,
-/// for masked arrays and for arrays with dimensions. Errors other than those of the type or the
-/// size are thrown.
+/// for booleans, masked arrays and arrays with dimensions. Errors other than those of the type or
+/// the size are thrown.
 pybind11::object realOf(const pybind11::handle& object);
 
 /// pybind11 would call __int__() where there is no __index__(), which cuts off fractions, and would
@@ -87,9 +91,40 @@ class RealCaster {
   }
 };
 
+/// An argument that is True or False. pybind11 would take for a `bool` whatever has a truth value:
+/// NaN, a text, an array of one number.
+class Flag {
+ public:
+  explicit Flag(bool value = false) : value_(value) {}
+  operator bool() const { return value_; }
+
+ private:
+  bool value_;
+};
+
+class FlagCaster {
+ public:
+  PYBIND11_TYPE_CASTER(Flag, pybind11::detail::const_name("bool"));
+
+  bool load(pybind11::handle source, bool /*convert*/) {
+    if (!source || !isBool(source)) {
+      return false;
+    }
+    value = Flag(PyObject_IsTrue(source.ptr()) == 1);
+    return true;
+  }
+
+  static pybind11::handle cast(Flag from, pybind11::return_value_policy, pybind11::handle) {
+    return PyBool_FromLong(from ? 1 : 0);
+  }
+};
+
 }  // namespace limitsurf::python
 
 namespace pybind11::detail {
+
+template <>
+class type_caster<limitsurf::python::Flag> : public limitsurf::python::FlagCaster {};
 
 template <>
 class type_caster<int> : public limitsurf::python::IntegerCaster<int> {};

@@ -68,7 +68,8 @@ by 0.2 tolerances at most. Cost: O(n log n) and some 10 searches for each contro
 runs back and forth, at most 128 for each of its points in each of log2(n) + 1 rounds.
 
 Raises LocationError for locations that are not on the surface, MeshError for those on refused faces, and
-ValueError for arrays of other shapes, fewer than 2 points, and a tolerance that is not above 0.
+ValueError for arrays of other shapes, fewer than 2 points, a tolerance that is not above 0, an offset that
+is not finite, and a corner_angle or value_tolerance below 0.
 )";
 
 constexpr const char* kSmoothPathDoc =
@@ -129,12 +130,12 @@ SpaceCurves spaceCurves(const py::object& points, const py::object& left, const 
     curves.offsets.assign(array.data(), array.data() + array.size());
   }
   const std::size_t count = curves.offsets.empty() ? 0 : curves.offsets.size() - 1;
-  if (py::isinstance<py::bool_>(closed)) {
-    curves.closed.assign(count, closed.cast<bool>());
+  if (isBool(closed)) {
+    curves.closed.assign(count, py::bool_(closed));
   } else {
     const py::array_t<bool> flags = booleans(closed, "closed");
     if (flags.ndim() != 1) {
-      throw py::type_error("closed must be a bool or an array of bools");
+      throw py::type_error("closed has shape " + shapeText(flags) + "; expected a bool, or (c,)");
     }
     curves.closed.assign(flags.data(), flags.data() + flags.size());
   }
@@ -174,7 +175,7 @@ FitKind kindOf(const std::string& name) {
 }
 
 py::object fitPath(const SharedSurface& shared, const py::object& face, const py::object& uv,
-                   double tolerance, const std::string& kind, bool closed, double offset,
+                   double tolerance, const std::string& kind, Flag closed, double offset,
                    double corner_angle, const py::object& values, double value_tolerance,
                    int threads) {
   checkThreads(threads);
@@ -202,7 +203,7 @@ py::object fitPath(const SharedSurface& shared, const py::object& face, const py
 }
 
 py::object smoothPath(const SharedSurface& shared, const py::object& face, const py::object& uv,
-                      const py::object& weights, int iterations, bool closed, int threads) {
+                      const py::object& weights, int iterations, Flag closed, int threads) {
   checkThreads(threads);
   const Locations path = locationsOf(shared.surface().faceCount(), face, uv);
   const Eigen::VectorXd each = numbers(weights, "weights");

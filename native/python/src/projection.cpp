@@ -66,8 +66,8 @@ void projectInParts(const CheckedLocations& at, const ProgressReport& report,
 
 py::object project(const SharedSurface& shared, const SharedData& uv_map, const py::object& face,
                    const py::object& uv, const py::object& matrix, const py::object& texel,
-                   const py::object& facing, bool two_sided, bool occlusion, int samples,
-                   std::optional<double> bias, double soft_edge, bool frame,
+                   const py::object& facing, Flag two_sided, Flag occlusion, int samples,
+                   std::optional<double> bias, double soft_edge, Flag frame,
                    const py::object& depth, const py::object& world, int threads,
                    const py::object& progress) {
   checkThreads(threads);

@@ -105,7 +105,7 @@ auto sampled(const SharedSurface& shared, const DensityArgument& density, int th
   return sample(sampler, density.on(shared.surface(), threads), tell);
 }
 
-py::object area(const SharedSurface& shared, bool error, int threads) {
+py::object area(const SharedSurface& shared, Flag error, int threads) {
   checkThreads(threads);
   SurfaceArea area;
   {

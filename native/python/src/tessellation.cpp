@@ -90,7 +90,7 @@ py::array_t<float> cornerUvs(const Tessellation& t) {
   return uvs;
 }
 
-py::object tessellate(const SharedSurface& shared, const py::object& levels, bool corner_normals,
+py::object tessellate(const SharedSurface& shared, const py::object& levels, Flag corner_normals,
                       int threads, const py::object& progress) {
   checkThreads(threads);
   TessellationOptions options{threads, corner_normals, ProgressReport(progress)};

@@ -91,6 +91,9 @@ def test_integers_of_wrong_types_and_sizes(name, argument, wrong):
 
 #: What is no integer, though most of it has __int__()
 NO_INTEGERS = (
+    True,
+    np.bool_(True),
+    np.array(True),
     2.7,
     np.float32(2.7),
     np.longdouble(2.7),
@@ -143,7 +146,10 @@ def test_numbers_of_every_kind_are_taken(distance):
 
 @pytest.mark.parametrize(
     "wrong",
-    ["1.5", None, 1j, np.array([1.5]), np.timedelta64(2, "s"), np.datetime64("2020"), POINTS],
+    [
+        *("1.5", None, 1j, True, np.False_, np.array(True), np.array([1.5]), POINTS),
+        *(np.timedelta64(2, "s"), np.datetime64("2020")),
+    ],
     ids=lambda value: type(value).__name__,
 )
 def test_what_is_no_number(wrong):
@@ -210,3 +216,32 @@ def test_faces_may_be_any_array():
     for given in (memoryview(faces), Interface(), Converted()):
         mesh = ls.ControlMesh.from_faces(positions, given)
         np.testing.assert_array_equal(mesh.face_vertices, faces.ravel())
+
+
+def boolean_parameters():
+    """(function, parameter) for every parameter that is True or False"""
+    for name, definition in FUNCTIONS.items():
+        at = definition.args
+        for a in (*at.args, *at.kwonlyargs):
+            if a.annotation and ast.unparse(a.annotation) == "bool":
+                yield name, a.arg
+
+
+FLAG_CASES = {**INTEGER_CASES, "LimitSurface.area": (SURFACE.area, {})}
+
+
+@pytest.mark.parametrize(("name", "argument"), list(boolean_parameters()))
+def test_only_booleans_are_flags(name, argument):
+    call, given = FLAG_CASES[name]
+    for right in (True, False, np.True_):
+        call(**{**given, argument: right})
+    for wrong in (1, 0, None, float("nan"), "no", [], np.array([True]), np.array(2), bool):
+        with pytest.raises(TypeError, match=rf"^{argument} is .*; expected True or False$"):
+            call(**{**given, argument: wrong})
+
+
+def test_closed_is_a_flag_or_an_array_of_flags():
+    for right in (True, np.True_, [True], np.array([True])):
+        assert ANY_SURFACE.lay_path(POINTS, 0.1, closed=right).closed[0]
+    with pytest.raises(TypeError, match="^closed has dtype int64; expected booleans"):
+        ANY_SURFACE.lay_path(POINTS, 0.1, closed=1)
