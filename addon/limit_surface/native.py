@@ -76,12 +76,13 @@ def sentence(reason: object, called: Callable[[int], str] | None = None) -> str:
     text = str(reason)
     if not isinstance(reason, ValueError):
         return text
+    row = None
     if found := _ROW.match(text):
         row, text = int(found[1]), found[2]
-        if called:
-            return f"{called(row)}: {text}"
     if argument := _ARGUMENT.match(text):
         text = argument[0].replace("_", " ").title() + text[argument.end() :]
+    if row is not None and called:
+        return f"{called(row)}: {text}"
     return text[:1].upper() + text[1:]
 
 

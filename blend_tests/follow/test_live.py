@@ -143,7 +143,7 @@ def test_the_strand_whose_root_is_no_place_is_named():
     attributes.write(hair.data, ids.REST_ROOT, "FLOAT_VECTOR", "CURVE", root)
     live_kept.forget()
     bpy.context.scene.frame_set(20)
-    assert live_kept.trouble(hair).startswith("Strand 3 of Limit Hair: the rest root is (nan")
+    assert live_kept.trouble(hair).startswith("Strand 3 of Limit Hair: Rest Roots is (nan")
 
 
 def test_a_surface_without_subdivision_is_followed():

@@ -98,8 +98,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> PtexLayout::mapCoordin
                           " is not among the " + std::to_string(faces_) + " Ptex faces");
     }
     if (!(place.u >= 0 && place.u <= 1 && place.v >= 0 && place.v <= 1)) {
-      throw LocationError("row " + std::to_string(row) + ": (u, v) = (" + numberText(place.u) +
-                          ", " + numberText(place.v) + ") is outside [0, 1]");
+      throw LocationError("row " + std::to_string(row) + ": uv is (" + numberText(place.u) + ", " +
+                          numberText(place.v) + "), which is outside [0, 1]");
     }
     const Pixel first = origin(place.face);
     result.row(static_cast<Eigen::Index>(row)) << (first.x + 0.5 + resolution_ * place.u) / width(),

@@ -193,8 +193,8 @@ std::vector<Location> SubdividedFaces::locate(const LocationBatch& at, int threa
   for (std::size_t row = 0; row < at.size(); ++row) {
     const Location place = at[row];
     if (!(place.u >= 0 && place.u <= 1 && place.v >= 0 && place.v <= 1)) {
-      throw LocationError("row " + std::to_string(row) + ": (u, v) = (" + numberText(place.u) +
-                          ", " + numberText(place.v) + ") is outside [0, 1]");
+      throw LocationError("row " + std::to_string(row) + ": uv is (" + numberText(place.u) + ", " +
+                          numberText(place.v) + "), which is outside [0, 1]");
     }
   }
   std::vector<Location> result(at.size());

@@ -201,7 +201,7 @@ Points evaluate(const LimitSurface& surface, const FlowMesh& mesh, const Eigen::
 Points curveDirections(const LimitSurface& surface, const Polylines& curves,
                        const LocationBatch& locations, int threads, const Progress& progress) {
   checkThreads(threads);
-  checkPolylines(curves);
+  checkPolylines(curves, "points", "offsets");
   const LocationBatch at = surface.checkLocations(locations, threads);
   const auto report = [&](double part) {
     if (progress) {

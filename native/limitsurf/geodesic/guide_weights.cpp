@@ -85,7 +85,7 @@ GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guid
                                 std::to_string(GuideOptions::kMostGuides));
   }
   if (!options.cut_curves.offsets.empty() || options.cut_curves.points.rows() > 0) {
-    checkPolylines(options.cut_curves);
+    checkPolylines(options.cut_curves, "cut_points", "cut_offsets");
   }
   const LocationBatch checked_guides = surface.checkLocations(guides, options.threads);
   const LocationBatch checked = surface.checkLocations(at, options.threads);

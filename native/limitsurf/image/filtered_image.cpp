@@ -12,6 +12,7 @@
 #include <string>
 
 #include "limitsurf/image/image_lookup.h"
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -27,7 +28,7 @@ constexpr std::size_t kPlacesPerTask = 256, kRowsOfPixelsPerTask = 16;
   }
   std::ostringstream message;
   message << "pixel (" << i / channels << ", " << y << "): channel " << i % channels << " is "
-          << row[i] << "; pixels must be finite";
+          << numberText(row[i]) << "; pixels must be finite";
   throw std::invalid_argument(message.str());
 }
 

@@ -8,6 +8,7 @@
 
 #include "limitsurf/image/filtered_image.h"
 #include "limitsurf/image/pixel_extremes.h"
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -97,8 +98,8 @@ void checkBoxes(const ImageBoxes& boxes) {
     }
     if (!box.allFinite() || box[0] > box[2] || box[1] > box[3]) {
       std::ostringstream message;
-      message << "row " << i << ": the box from (" << box[0] << ", " << box[1] << ") to (" << box[2]
-              << ", " << box[3]
+      message << "row " << i << ": boxes is from (" << numberText(box[0]) << ", "
+              << numberText(box[1]) << ") to (" << numberText(box[2]) << ", " << numberText(box[3])
               << "); its corners must be finite, and the lower one must not be above the upper one";
       throw std::invalid_argument(message.str());
     }

@@ -156,7 +156,7 @@ void checkVertexSharpness(const ControlMesh& mesh, const VertexSharpness& sharpn
 void checkHoles(const ControlMesh& mesh, const std::vector<std::int64_t>& holes) {
   for (const std::int64_t face : holes) {
     if (face < 0 || face >= mesh.faceCount()) {
-      refuse("hole ", face, ": the mesh has ", mesh.faceCount(), " faces");
+      refuse("holes names face ", face, "; the mesh has ", mesh.faceCount(), " faces");
     }
   }
 }

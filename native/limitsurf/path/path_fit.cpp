@@ -302,12 +302,24 @@ class Fitter {
   std::vector<Piece> done_;
 };
 
+void checkAtLeastZero(const char* name, double value) {
+  if (!(value >= 0)) {
+    throw std::invalid_argument(std::string(name) + " is " + numberText(value) +
+                                "; it must be 0 or more");
+  }
+}
+
 }  // namespace
 
 PathFit fitPath(const LimitSurface& surface, const SurfaceSearch& search,
                 const std::vector<Location>& path, const FitOptions& options) {
   checkThreads(options.threads);
   checkTolerance(options.tolerance);
+  if (!std::isfinite(options.offset)) {
+    throw std::invalid_argument("offset is " + numberText(options.offset) + "; it must be finite");
+  }
+  checkAtLeastZero("corner_angle", options.corner_angle);
+  checkAtLeastZero("value_tolerance", options.value_tolerance);
   if (path.size() < 2) {
     throw std::invalid_argument("a path has " + std::to_string(path.size()) +
                                 " points; at least 2 are needed");

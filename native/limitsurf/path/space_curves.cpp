@@ -33,12 +33,12 @@ Vector3 SpaceCurves::at(std::size_t curve, double place) const {
 }
 
 void SpaceCurves::check() const {
-  checkFinite(points, "point");
+  checkFinite(points, "points");
   if (before.rows() > 0 || after.rows() > 0) {
     checkRows(before, points.rows(), "handle_left");
     checkRows(after, points.rows(), "handle_right");
-    checkFinite(before, "handle");
-    checkFinite(after, "handle");
+    checkFinite(before, "handle_left");
+    checkFinite(after, "handle_right");
   }
   if (offsets.empty() || offsets.front() != 0 || offsets.back() != points.rows()) {
     throw std::invalid_argument("offsets must begin with 0 and end with the number of points, " +

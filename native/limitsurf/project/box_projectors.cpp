@@ -33,7 +33,7 @@ BoxWeights boxWeights(const Points& normals, double blend, const Eigen::Matrix4d
     throw std::invalid_argument("blend is " + numberText(blend) + "; expected 0 to 1");
   }
   const Eigen::Matrix3d to_box = DirectionMaps(invertibleLinearPart(matrix, "matrix")).normals;
-  checkDirections(normals);
+  checkDirections(normals, "normals");
   BoxWeights weights = BoxWeights::Zero(normals.rows(), 6);
   InterruptionStride stride;
   for (Eigen::Index row = 0; row < normals.rows(); ++row) {

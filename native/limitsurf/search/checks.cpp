@@ -16,8 +16,8 @@ namespace {
 [[noreturn]] void refuse(const char* name, Eigen::Index row, const PointRows& rows,
                          const char* reason) {
   std::ostringstream message;
-  message << "row " << row << ": the " << name << " (" << numberText(rows(row, 0)) << ", "
-          << numberText(rows(row, 1)) << ", " << numberText(rows(row, 2)) << ") " << reason;
+  message << "row " << row << ": " << name << " is (" << numberText(rows(row, 0)) << ", "
+          << numberText(rows(row, 1)) << ", " << numberText(rows(row, 2)) << "), which " << reason;
   throw std::invalid_argument(message.str());
 }
 
@@ -50,13 +50,13 @@ void checkFinite(const PointRows& rows, const char* name, double scale) {
   }
 }
 
-void checkDirections(const PointRows& rows) {
+void checkDirections(const PointRows& rows, const char* name) {
   for (Eigen::Index row = 0; row < rows.rows(); ++row) {
     if (!rows.row(row).allFinite()) {
-      refuse("direction", row, rows, "is not finite");
+      refuse(name, row, rows, "is not finite");
     }
     if ((rows.row(row).array() == 0).all()) {
-      refuse("direction", row, rows, "has no length");
+      refuse(name, row, rows, "has no length");
     }
   }
 }

@@ -11,10 +11,10 @@ namespace limitsurf {
 constexpr double kFarthestPoint = 1e150;
 
 /// Coordinates must be finite and, times `scale`, so small that their squares do not overflow.
-/// `name` is what a row is called in the message, as in "point".
+/// `name` is what the message calls the array.
 void checkFinite(const PointRows& rows, const char* name, double scale = 1);
 /// Directions must be finite and not 0.
-void checkDirections(const PointRows& rows);
+void checkDirections(const PointRows& rows, const char* name);
 /// There must be as many rows as `expected`.
 void checkRows(const PointRows& rows, Eigen::Index expected, const char* name);
 /// The distance must be 0 or more, and not NaN.

@@ -300,11 +300,11 @@ void SurfaceSearch::closest(const PointRows& points, const ClosestOptions& optio
                             int threads) const {
   checkThreads(threads);
   const double scale = data_->scale;
-  checkFinite(points, "point", scale);
+  checkFinite(points, "points", scale);
   checkDistance(options.max_distance);
   if (options.facing.rows() > 0) {
     checkRows(options.facing, points.rows(), "facing");
-    checkDirections(options.facing);
+    checkDirections(options.facing, "facing");
   }
   checkAngle(options.max_angle);
   ClosestRows rows(*data_, points, options, threads, hits.at);

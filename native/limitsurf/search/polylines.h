@@ -16,8 +16,9 @@ struct Polylines {
 };
 
 /// Throws std::invalid_argument for offsets that do not begin with 0, decrease, or do not end with
-/// the number of points; and naming the first point that is not finite.
-void checkPolylines(const Polylines& curves);
+/// the number of points; and naming the first point that is not finite. The names are what messages
+/// call the two arrays.
+void checkPolylines(const Polylines& curves, const char* points_name, const char* offsets_name);
 
 /// Calls body(from, to) for the ends of each straight line of positive length.
 template <typename Body>

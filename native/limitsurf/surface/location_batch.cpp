@@ -33,6 +33,13 @@ LocationBatch::LocationBatch(const void* faces, std::size_t face_size, std::size
   }
 }
 
+LocationBatch LocationBatch::called(const char* face_word, const char* uv_word) const {
+  LocationBatch renamed(*this);
+  renamed.face_word_ = face_word;
+  renamed.uv_word_ = uv_word;
+  return renamed;
+}
+
 LocationBatch LocationBatch::rows(std::size_t begin, std::size_t count) const {
   LocationBatch some(*this);
   some.size_ = count;

@@ -41,6 +41,10 @@ class LocationBatch {
   double u(std::size_t row) const { return parameter(row, 0); }
   double v(std::size_t row) const { return parameter(row, 1); }
 
+  /// The same batch with other words for "face" and "uv" in messages: a call may take two batches.
+  /// The words must live on.
+  LocationBatch called(const char* face_word, const char* uv_word) const;
+
   /// Some rows of the batch. They are checked if the batch is.
   LocationBatch rows(std::size_t begin, std::size_t count) const;
 
@@ -59,6 +63,7 @@ class LocationBatch {
   std::size_t size_ = 0;
   bool is_wide_ = false;                      // faces of 64 bits
   const TiledSurface* checked_on_ = nullptr;  // where the check was done
+  const char *face_word_ = "face", *uv_word_ = "uv";
 };
 
 }  // namespace limitsurf

@@ -11,18 +11,15 @@
 
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/own_unit.h"
+#include "limitsurf/row_check.h"
 
 namespace limitsurf {
 namespace {
 
-void checkRows(Eigen::Index rows, const ShadingFrames& frames) {
-  for (const Eigen::Index count :
-       {frames.normal.rows(), frames.tangent.rows(), frames.sign.rows()}) {
-    if (count != rows) {
-      throw std::invalid_argument(std::to_string(rows) + " vectors for frames of " +
-                                  std::to_string(count) + " rows");
-    }
-  }
+void checkFrames(const ShadingFrames& frames, Eigen::Index rows) {
+  checkRows("normals", frames.normal.rows(), rows);
+  checkRows("tangents", frames.tangent.rows(), rows);
+  checkRows("signs", frames.sign.rows(), rows);
 }
 
 /// Columns tangent, bitangent, normal.
@@ -113,7 +110,7 @@ Vector3 directionInUnits(const FrameInUnits& frame, const Vector3& components) {
 }  // namespace
 
 Points intoShadingFrames(const Points& directions, const ShadingFrames& frames) {
-  checkRows(directions.rows(), frames);
+  checkFrames(frames, directions.rows());
   Points out(directions.rows(), 3);
   std::vector<Eigen::Index> others;
   InterruptionStride stride;
@@ -137,7 +134,7 @@ Points intoShadingFrames(const Points& directions, const ShadingFrames& frames) 
 }
 
 Points outOfShadingFrames(const Points& components, const ShadingFrames& frames) {
-  checkRows(components.rows(), frames);
+  checkFrames(frames, components.rows());
   Points out(components.rows(), 3);
   std::vector<Eigen::Index> others;
   InterruptionStride stride;

@@ -36,12 +36,13 @@ void TiledSurface::check(const LocationBatch& at, std::size_t row) const {
   std::ostringstream message;
   message << "row " << row << ": ";
   if (!exists) {
-    message << "face " << face << " is not among the " << table.faces.size() << " Ptex faces";
+    message << at.face_word_ << " " << face << " is not among the " << table.faces.size()
+            << " Ptex faces";
     throw LocationError(message.str());
   }
   if (!inside(location.u) || !inside(location.v)) {
-    message << "(u, v) = (" << numberText(location.u) << ", " << numberText(location.v)
-            << ") is outside [0, 1]";
+    message << at.uv_word_ << " is (" << numberText(location.u) << ", " << numberText(location.v)
+            << "), which is outside [0, 1]";
     throw LocationError(message.str());
   }
   const int base = ptex.base_face[location.face];

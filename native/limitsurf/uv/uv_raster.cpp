@@ -7,8 +7,10 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/uv/nearest_chords.h"
 
@@ -38,7 +40,13 @@ template <typename Number>
 void checkRange(const char* name, Number value, Number least, Number most) {
   if (!(value >= least && value <= most)) {
     std::ostringstream message;
-    message << name << " is " << value << "; it must be " << least << " to " << most;
+    message << name << " is ";
+    if constexpr (std::is_integral_v<Number>) {
+      message << value;
+    } else {
+      message << numberText(value);
+    }
+    message << "; it must be " << least << " to " << most;
     throw std::invalid_argument(message.str());
   }
 }

@@ -31,8 +31,8 @@ void checkPoints(const PlanePoints& points) {
   for (Eigen::Index row = 0; row < points.rows(); ++row) {
     if (!(points.row(row).cwiseAbs().maxCoeff() <= kFarthest) || !points.row(row).allFinite()) {
       std::ostringstream message;
-      message << "row " << row << ": the point (" << numberText(points(row, 0)) << ", "
-              << numberText(points(row, 1)) << ") "
+      message << "row " << row << ": points is (" << numberText(points(row, 0)) << ", "
+              << numberText(points(row, 1)) << "), which "
               << (points.row(row).allFinite()
                       ? "is too far away; coordinates must be at most " + numberText(kFarthest)
                       : "is not finite");

@@ -2,10 +2,12 @@
 #include "arrays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "limitsurf/error.h"
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "result_memory.h"
 
@@ -68,7 +70,7 @@ std::pair<Number, Number> twoOf(const py::object& object, const char* name, cons
 }
 
 std::string dtypeText(const py::array& array) {
-  return py::cast<std::string>(py::str(array.dtype()));
+  return shortened(py::cast<std::string>(py::str(array.dtype())));
 }
 
 }  // namespace
@@ -90,7 +92,15 @@ std::string valueText(const py::handle& value) {
       py::cast<int>(value.attr("bit_length")()) > 200) {
     return "an integer of " + py::cast<std::string>(py::str(value.attr("bit_length")())) + " bits";
   }
-  return shortened(py::cast<std::string>(py::repr(value)));
+  try {
+    const py::object text = py::repr(value).attr("encode")("utf-8", "backslashreplace");
+    return shortened(py::cast<std::string>(text));
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_Exception)) {
+      throw;
+    }
+    return "an object of the class " + shortened(Py_TYPE(value.ptr())->tp_name);
+  }
 }
 
 std::string shapeText(const py::array& array) {
@@ -168,9 +178,33 @@ Doubles doubles(const py::handle& object, const char* name) {
 
 Floats floats(const py::object& object, const char* name) {
   const py::array array = viewed(object, name);
-  const bool is_small = array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4;
-  return py::cast<Floats>((is_small ? array : py::array(doubles(array, name)))
-                              .attr("astype")("float32", py::arg("copy") = false));
+  if (array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4) {
+    return py::cast<Floats>(array.attr("astype")("float32", py::arg("copy") = false));
+  }
+  const Doubles numbers = doubles(array, name);
+  Floats rounded(std::vector<py::ssize_t>(numbers.shape(), numbers.shape() + numbers.ndim()));
+  const double* const from = numbers.data();
+  float* const to = rounded.mutable_data();
+  forEachRow(static_cast<std::size_t>(numbers.size()),
+             [&](std::size_t i) { to[i] = static_cast<float>(from[i]); });
+  return rounded;
+}
+
+Floats floatsInRange(const py::object& object, const char* name) {
+  Floats rounded = floats(object, name);
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  const float* const end = rounded.data() + rounded.size();
+  if (std::all_of(rounded.data(), end, is_finite)) {
+    return rounded;
+  }
+  const Doubles given = doubles(object, name);
+  for (py::ssize_t i = 0; i < given.size(); ++i) {
+    if (is_finite(given.data()[i]) && !is_finite(rounded.data()[i])) {
+      throw py::value_error(elementText(given, name, i) + " is " + numberText(given.data()[i]) +
+                            ", which float32 cannot hold");
+    }
+  }
+  return rounded;
 }
 
 std::pair<double, double> twoNumbers(const py::object& object, const char* name) {
@@ -265,10 +299,18 @@ py::dtype floatType(const py::object& dtype) {
   if (dtype.is(usual)) {
     return py::reinterpret_borrow<py::dtype>(dtype);
   }
-  const py::dtype result = py::dtype::from_args(dtype);
+  py::dtype result;
+  try {
+    result = py::dtype::from_args(dtype);
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_Exception)) {
+      throw;
+    }
+    throw py::type_error("dtype is " + valueText(dtype) + "; expected float64 or float32");
+  }
   if (result.kind() != 'f' || (result.itemsize() != 8 && result.itemsize() != 4) ||
       !py::cast<bool>(result.attr("isnative"))) {
-    throw py::type_error("dtype is " + py::cast<std::string>(py::str(result)) +
+    throw py::type_error("dtype is " + shortened(py::cast<std::string>(py::str(result))) +
                          "; expected float64 or float32 in the machine's byte order");
   }
   return result;

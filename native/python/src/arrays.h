@@ -47,7 +47,8 @@ using RaiseText = void (*)(const std::string&);
 /// Text for a message: a long one ends in dots.
 std::string shortened(std::string text);
 
-/// A value for a message, as Python writes it. Integers of thousands of digits cannot be written.
+/// A value for a message, as Python writes it, or its class if that raises. Integers of thousands
+/// of digits cannot be written.
 std::string valueText(const py::handle& value);
 
 /// An array of anything that numpy can view as integers; [] is an empty one. Masked arrays are
@@ -65,8 +66,12 @@ Integers integers(const py::handle& object, const char* name) {
 /// numbers.
 Doubles doubles(const py::handle& object, const char* name);
 
-/// The same rounded to float32. An array of float32 is not converted.
+/// The same rounded to float32: numbers beyond its range become infinite, without the warning that
+/// numpy would give. An array of float32 is not converted.
 Floats floats(const py::object& object, const char* name);
+
+/// The same. Throws ValueError for a finite number that would become infinite.
+Floats floatsInRange(const py::object& object, const char* name);
 
 /// The array of float32 that receives a result: `out`, or a new one. Throws TypeError unless `out`
 /// is such an array, contiguous and writeable, and ValueError for another shape.

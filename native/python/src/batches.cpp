@@ -52,8 +52,8 @@ Locations locationsOf(int face_count, const py::object& face, const py::object& 
     const std::int64_t id = ids[one ? 0 : row];
     if (id < lowest || id > highest) {
       std::ostringstream message;
-      message << "row " << row << ": face " << id << " is not among the " << face_count
-              << " Ptex faces";
+      message << "row " << row << ": " << face_name << " " << id << " is not among the "
+              << face_count << " Ptex faces";
       throw LocationError(message.str());
     }
     result.push_back({static_cast<int>(id), parameters[2 * row], parameters[2 * row + 1]});

@@ -49,8 +49,10 @@ class LocationArrays {
 class CheckedLocations {
  public:
   template <typename Surface>
-  CheckedLocations(const Surface& surface, Locations rows)
-      : rows_(std::move(rows)), batch_(surface.checkLocations(rows_, 1)) {}
+  CheckedLocations(const Surface& surface, Locations rows, const char* face_name,
+                   const char* uv_name)
+      : rows_(std::move(rows)),
+        batch_(surface.checkLocations(LocationBatch(rows_).called(face_name, uv_name), 1)) {}
 
   std::size_t size() const { return rows_.size(); }
   LocationBatch part(std::size_t begin, std::size_t count) const {
@@ -72,7 +74,7 @@ CheckedLocations locationsOn(const Surface& surface, const py::object& face, con
                              const char* face_name = "face", const char* uv_name = "uv") {
   Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size, face_name, uv_name);
   const GilRelease release;
-  return CheckedLocations(surface, std::move(at));
+  return CheckedLocations(surface, std::move(at), face_name, uv_name);
 }
 
 /// Throws ValueError for an order below 0 or above `highest`.

@@ -127,7 +127,7 @@ py::object resampleStrands(const py::object& points, const py::object& offsets, 
 
 GuideStrands guideStrands(const py::object& points, const py::object& normals) {
   Doubles array = doubles(points, "guide_points");
-  shapeEmpty(array, {0, 1, 3});
+  shapeEmpty(array, {0, 2, 3});  // the fewest points that a strand can have
   if (array.ndim() != 3 || array.shape(2) != 3) {
     throw py::value_error("guide_points has shape " + shapeText(array) + "; expected (g, p, 3)");
   }

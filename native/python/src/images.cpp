@@ -36,9 +36,9 @@ const Choices<BlendMode> kBlendModes = {
 }
 
 std::unique_ptr<FilteredImage> makeImage(const py::object& pixels, const std::string& extension,
-                                         bool premultiplied, int threads) {
+                                         Flag premultiplied, int threads) {
   const Extension beyond = choice(extension, "extension", kExtensions);
-  const Floats array = floats(pixels, "pixels");
+  const Floats array = floatsInRange(pixels, "pixels");
   constexpr py::ssize_t kLargestSide = py::ssize_t{1} << 20;
   if (array.ndim() != 3 || array.size() == 0 || array.shape(2) > 4 ||
       std::max(array.shape(0), array.shape(1)) > kLargestSide) {
@@ -118,7 +118,7 @@ Colours pixelRows(const py::object& object, const char* name) {
 }
 
 py::object blendOver(const py::object& below, const py::object& above, const py::object& weight,
-                     const std::string& mode, bool premultiplied) {
+                     const std::string& mode, Flag premultiplied) {
   const BlendMode blend = choice(mode, "mode", kBlendModes);
   const Colours lower = pixelRows(below, "below"), upper = pixelRows(above, "above");
   const Doubles weights = doubles(weight, "weight");

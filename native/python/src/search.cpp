@@ -121,8 +121,8 @@ py::object closest(const SharedSurface& shared, const py::object& points, double
   const SearchRows all(points, "points");
   const Points directions = facingOf(facing, all.count());
   HitArrays arrays(all.count(), floatType(dtype));
-  checkFinite(all.all(), "point");
-  checkDirections(directions);
+  checkFinite(all.all(), "points");
+  checkDirections(directions, "facing");
   checkDistance(max_distance);
   checkAngle(max_angle);
   ClosestOptions options;
@@ -147,8 +147,8 @@ struct Rays {
   Rays(const py::object& from, const py::object& along, double max_distance)
       : origins(from, "origins"), directions(along, "directions") {
     requireAsMany(directions.count(), "directions", origins.count(), "origins");
-    checkFinite(origins.all(), "origin");
-    checkDirections(directions.all());
+    checkFinite(origins.all(), "origins");
+    checkDirections(directions.all(), "directions");
     checkDistance(max_distance);
   }
   SearchRows origins, directions;

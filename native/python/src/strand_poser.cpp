@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "arrays.h"
 #include "batches.h"
 #include "bound_class.h"
+#include "limitsurf/number_text.h"
 #include "matrices.h"
 #include "strand_poser.h"
 
@@ -139,6 +141,26 @@ Eigen::Map<const Rows<Columns>> viewOf(const Floats& array) {
   return {array.data(), array.shape(0), Columns};
 }
 
+/// Throws ValueError for the first number that float32 cannot hold, in the row of a bound strand.
+/// What is not finite in the first place is left to StrandPoser.
+void refuseBeyondFloat(const py::object& object, const char* name,
+                       const FloatRotations& rotations) {
+  if (isPlain<float>(object)) {
+    return;
+  }
+  const Doubles array = doubles(object, name);
+  const py::ssize_t rows = std::min<py::ssize_t>(array.shape(0), rotations.rows());
+  const py::ssize_t columns = array.size() / std::max<py::ssize_t>(array.shape(0), 1);
+  for (py::ssize_t i = 0; i < rows * columns; ++i) {
+    const double number = array.data()[i];
+    if (std::isfinite(number) && !std::isfinite(static_cast<float>(number)) &&
+        !rotations.row(i / columns).isZero(0)) {
+      throw py::value_error("row " + std::to_string(i / columns) + ": " + name + " has " +
+                            numberText(number) + ", which float32 cannot hold");
+    }
+  }
+}
+
 /// Rest rotations: quaternions (n, 4), or matrices (n, 3, 3), which are converted. A matrix of
 /// zeros becomes the quaternion of zeros.
 FloatRotations floatRotations(const py::object& object) {
@@ -157,6 +179,12 @@ FloatRotations floatRotations(const py::object& object) {
     if (matrix.isZero(0)) {
       result.row(row).setZero();
     } else {
+      for (Eigen::Index i = 0; i < 9; ++i) {
+        if (!std::isfinite(matrix.data()[i])) {
+          throw py::value_error("row " + std::to_string(row) + ": rest_rotations has " +
+                                numberText(matrix.data()[i]) + ", which is not finite");
+        }
+      }
       const Eigen::Quaterniond q{Eigen::Matrix3d(matrix)};
       result.row(row) = Eigen::RowVector4d(q.w(), q.x(), q.y(), q.z()).cast<float>();
     }
@@ -274,6 +302,8 @@ std::unique_ptr<BoundStrandPoser> makePoser(const SharedSurface& shared, const p
   const Floats roots = floatRows<3>(rest_roots, "rest_roots");
   const FloatRotations rotations = floatRotations(rest_rotations);
   const std::vector<std::int64_t> starts = strandOffsets(offsets);
+  refuseBeyondFloat(rest_roots, "rest_roots", rotations);
+  refuseBeyondFloat(rest_rotations, "rest_rotations", rotations);
   const Eigen::Map<const Rows<3>> root_rows = viewOf<3>(roots);
   const LongCall call(shared.lock);
   return std::make_unique<BoundStrandPoser>(

@@ -293,19 +293,6 @@ WORDS = {
     "positions": "position",
     "edge_sharpness": "sharpness",
     "vertex_sharpness": "sharpness",
-    "uv": r"\(u, v\) = ",
-    "guide_uv": r"\(u, v\) = ",
-    "st": "st ",
-    "normals": "direction",
-    "facing": "direction",
-    "directions": "direction",
-    "origins": "origin",
-    "points": "point",
-    "cut_points": "point",
-    "handle_left": "handle",
-    "handle_right": "handle",
-    "rest_roots": "rest root",
-    "rest_rotations": "rest rotation",
     "pixels": "pixel",
     "arc": "arc length",
 }
@@ -360,7 +347,7 @@ def test_empty_lists_are_empty_arrays(name, argument, part):
     value = np.array(right(name, argument, part))
     empty = np.zeros((0, *value.shape[1:]), value.dtype)
     if argument == "guide_points":
-        empty = empty[:, :1]
+        empty = empty[:, :2]
 
     def without_shapes(found):
         return found and (found[0], re.sub(r"\(0,[ 0-9,]*\)", "(0, ...)", found[1]))
@@ -464,7 +451,7 @@ def test_nan_is_quoted(name, argument, part):
         assert "nan" in message or "float64; expected booleans" in message
     else:
         assert issubclass(error, ValueError)
-        assert re.search(WORDS.get(argument, argument), message), message
+        assert re.search(WORDS.get(argument, rf"\b{argument}\b"), message), message
         assert "nan" in message
 
 
@@ -492,6 +479,103 @@ def test_small_numbers_are_not_rounded(name, argument, part):
 def test_numbers_are_quoted_as_they_were_written(call, wrong):
     with pytest.raises(ValueError, match=f"^{wrong}"):
         call()
+
+
+@pytest.mark.parametrize(
+    ("call", "wrong"),
+    [
+        (lambda: SURFACE.fit_path(FACE, UV, 0.1, offset=float("nan")), "offset is nan"),
+        (lambda: SURFACE.fit_path(FACE, UV, 0.1, corner_angle=float("nan")), "corner_angle is nan"),
+        (lambda: SURFACE.fit_path(FACE, UV, 0.1, corner_angle=-5.0), "corner_angle is -5;"),
+        (
+            lambda: SURFACE.fit_path(FACE, UV, 0.1, values=[1] * 3, value_tolerance=float("nan")),
+            "value_tolerance is nan",
+        ),
+        (lambda: UV_MAP.rasterize(4, 4, margin=2**64), r"margin is 1\.8446744073709552e\+19;"),
+        (
+            lambda: SURFACE.scatter_blue_noise(radius=-(2**63) - 1),
+            r"radius is -9\.223372036854775808e\+18;|radius is -9\.223372036854776e\+18;",
+        ),
+        (
+            lambda: POSER.unpose([]),
+            "points has 0 rows; expected 3",
+        ),
+        (
+            lambda: SURFACE.strand_poser(FACE, UV, UP, [np.full((3, 3), np.inf)] * 3),
+            "row 0: rest_rotations has inf, which is not finite",
+        ),
+        (
+            lambda: SURFACE.guide_weights(FACE, [[2, 2]] * 3, FACE, UV),
+            r"row 0: guide_uv is \(2, 2\), which is outside \[0, 1\]",
+        ),
+        (
+            lambda: SURFACE.guide_weights(FACE, UV, FACE, [[2, 2]] * 3),
+            r"row 0: uv is \(2, 2\), which is outside \[0, 1\]",
+        ),
+        (lambda: SURFACE.guide_weights([9], UV[:1], FACE, UV), "row 0: guide_face 9 is not among"),
+        (
+            lambda: SURFACE.guide_weights([2**40], UV[:1], FACE, UV),
+            "row 0: guide_face 1099511627776 is not among",
+        ),
+        (lambda: SURFACE.guide_weights(FACE, UV, [9], UV[:1]), "row 0: face 9 is not among"),
+        (
+            lambda: SURFACE.guide_weights(FACE, UV, FACE, UV, cut_points=UP, cut_offsets=[0]),
+            "cut_offsets must .* the number of rows of cut_points, 3$",
+        ),
+        (
+            lambda: SURFACE.closest(POINTS, facing=[0, 0, 0]),
+            r"row 0: facing is \(0, 0, 0\), which has no length",
+        ),
+        (
+            lambda: SURFACE.ray_cast([[1e160, 0, 0]], UP[:1]),
+            r"row 0: origins is \(1e\+160, 0, 0\), which is too far away",
+        ),
+        (
+            lambda: ls.into_shading_frames(UP, UP[:1], UP, [1] * 3),
+            "normals has 1 rows; expected 3",
+        ),
+    ],
+)
+def test_the_argument_and_its_value_are_quoted(call, wrong):
+    with pytest.raises(ValueError, match=f"^(?:{wrong})"):
+        call()
+
+
+@pytest.mark.parametrize(
+    "dtype", ["x" * 10**6, "3", "", 10**400, "f8,,", {"a": 1}, "x", object(), "int32", complex]
+)
+def test_dtypes_are_named(dtype):
+    for call in (SURFACE.evaluate, SURFACE.frames, SURFACE.curvature):
+        with pytest.raises(TypeError, match=r"^dtype is .*; expected float64 or float32") as raised:
+            call(FACE, UV, dtype=dtype)
+        assert len(str(raised.value)) < 200
+
+
+class Unprintable:
+    def __repr__(self):
+        raise ZeroDivisionError
+
+
+@every_array
+def test_values_whose_repr_raises(name, argument, part):
+    for value in (Unprintable(), with_last(right(name, argument, part), Unprintable())):
+        error, message = outcome(name, argument, part, value)
+        assert issubclass(error, (TypeError, ls.MeshError))
+        assert message.startswith(argument)
+
+
+@pytest.mark.parametrize("argument", ["derivatives", "threads", "dtype"])
+def test_single_values_whose_repr_raises(argument):
+    with pytest.raises(TypeError, match=f"^{argument} is "):
+        ANY_SURFACE.evaluate(FACE, UV, **{argument: Unprintable()})
+
+
+def test_children_of_no_guides():
+    assert ls.child_strands([], [], [], [], [], []).shape == (0, 2, 3)
+    with pytest.raises(ValueError, match="^guide_points has 1 points for each guide; expected 2"):
+        ls.child_strands([[[0, 0, 0]]], UP[:1], [], [], [], [])
+    with pytest.raises(ValueError, match="^guide_normals has 0 rows; expected 1$"):
+        ls.child_strands([POINTS], [], [], [], [], [])
 
 
 @pytest.mark.parametrize(
@@ -571,6 +655,18 @@ def test_errors_name_the_argument_of_a_wrong_type():
         with pytest.raises(TypeError) as error:
             call()
         assert str(error.value) == message
+
+
+@every_array
+def test_numbers_that_float32_cannot_hold(name, argument, part, recwarn):
+    value = right(name, argument, part)
+    if np.array(value).dtype.kind != "f":
+        return
+    found = outcome(name, argument, part, with_last(value, 1e59))
+    assert not recwarn
+    assert found is None or "inf" not in found[1]
+    if argument in ("rest_roots", "rest_rotations") and name.startswith("LimitSurface"):
+        assert found == (ValueError, f"row 2: {argument} has 1e+59, which float32 cannot hold")
 
 
 EYE = np.eye(4)

@@ -138,7 +138,7 @@ def test_shading_frames_without_volume_and_errors():
     normals, _, signs = shading(3, 4)
     flat = ls.into_shading_frames(normals, normals, normals, signs)
     np.testing.assert_array_equal(flat, np.tile([0, 0, 1.0], (4, 1)))
-    with pytest.raises(ValueError, match="4 vectors for frames of 3 rows"):
+    with pytest.raises(ValueError, match="tangents has 3 rows; expected 4"):
         ls.into_shading_frames(normals, normals, normals[:3], signs)
     with pytest.raises(ValueError, match=r"vectors has shape \(4, 2\)"):
         ls.out_of_shading_frames(normals[:, :2], normals, normals, signs)

@@ -70,10 +70,10 @@ def test_progress_reaches_1_and_may_end_the_call(surface, at):
 @pytest.mark.parametrize(
     ("points", "offsets", "match"),
     [
-        ([[0, 0, 0], [1, 1, 0]], [0, 3], "end with the number of points, 2"),
+        ([[0, 0, 0], [1, 1, 0]], [0, 3], "end with the number of rows of points, 2"),
         ([[0, 0, 0], [1, 1, 0]], [1, 2], "begin with 0"),
         ([[0, 0, 0], [1, 1, 0]], [], "begin with 0"),
-        ([[0, 0, 0], [1, np.nan, 0]], None, r"row 1: the point \(1, nan, 0\) is not finite"),
+        ([[0, 0, 0], [1, np.nan, 0]], None, r"row 1: points is \(1, nan, 0\), .* not finite"),
         ([[1, 1, 0], [1, 1, 1]], None, "no part of a curve runs along the surface"),
         (np.empty((0, 3)), None, "no part of a curve"),
         ([[0, 0], [1, 1]], None, r"points has shape \(2, 2\)"),

@@ -217,7 +217,7 @@ def test_boxes_that_have_no_bounds():
     image = ls.FilteredImage(np.ones((2, 2, 1)), "clip")
     with pytest.raises(ValueError, match=r"boxes has shape \(1, 4\); expected \(n, 2, 2\)"):
         image.bounds([[0, 0, 1, 1]])
-    with pytest.raises(ValueError, match=r"row 1: the box from \(0, 1\) to \(1, 0\)"):
+    with pytest.raises(ValueError, match=r"row 1: boxes is from \(0, 1\) to \(1, 0\)"):
         image.bounds([[[0, 0], [1, 1]], [[0, 1], [1, 0]]])
     with pytest.raises(ValueError, match="4 channels"):
         ls.FilteredImage(np.ones((2, 2, 4)), "clip").bounds([[[0, 0], [1, 1]]])

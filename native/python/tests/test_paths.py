@@ -351,7 +351,7 @@ def test_errors_name_what_is_wrong(flat):
     line = [[0.2, 0.2, 0], [0.8, 0.5, 0]]
     assert "tolerance is 0" in refusal(flat.lay_path, line, 0)
     assert "max_step is 0" in refusal(flat.lay_path, line, 1, max_step=0)
-    assert "row 1: the point (nan" in refusal(flat.lay_path, [[0, 0, 0], [np.nan, 0, 0]], 1)
+    assert "row 1: points is (nan" in refusal(flat.lay_path, [[0, 0, 0], [np.nan, 0, 0]], 1)
     assert "together" in refusal(flat.lay_path, line, 1, handle_left=line)
     assert "handle_right has 1 rows; expected 2" in refusal(
         flat.lay_path, line, 1, handle_left=line, handle_right=line[:1]

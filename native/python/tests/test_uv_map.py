@@ -263,7 +263,7 @@ def test_positional_arguments_of_a_wrong_type_are_named_too(uv_map):
 
 def test_refused_points(uv_map):
     for value, text in [(np.nan, "nan"), (np.inf, "inf")]:
-        with pytest.raises(ValueError, match=f"row 1: the point .*{text}.* is not finite"):
+        with pytest.raises(ValueError, match=f"row 1: points is .*{text}.* is not finite"):
             uv_map.locate([[0, 0], [0.5, value]])
     with pytest.raises(ValueError, match=r"too far away; coordinates must be at most 1e\+150"):
         uv_map.locate([[1e200, 0]])

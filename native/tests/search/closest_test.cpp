@@ -597,9 +597,9 @@ TEST(Closest, TellsWhatIsWrongWithItsArguments) {
   expectThrow<Error>(closest(options), {"facing", "2", "3"});
   options.facing = Points::Ones(3, 3);
   options.facing.row(1).setZero();
-  expectThrow<Error>(closest(options), {"row 1", "direction", "length"});
+  expectThrow<Error>(closest(options), {"row 1", "facing", "length"});
   options.facing(1, 0) = NAN;
-  expectThrow<Error>(closest(options), {"row 1", "direction", "finite"});
+  expectThrow<Error>(closest(options), {"row 1", "facing", "finite"});
   options.facing.setOnes();
   options.max_angle = 3.2;
   expectThrow<Error>(closest(options), {"max_angle", "3.2"});

@@ -394,21 +394,21 @@ TEST(StrandPoser, BadInputIsNamed) {
   expectThrow<LocationError>([&] { make({at[0], at[1], {0, 1.5, 0}}); }, {"row 2", "1.5"});
   expectThrow<Invalid>([&] { make({at[0], at[1]}); }, {"rest_roots", "3 rows", "2"});
   expectThrow<Invalid>([&] { make(at, {0, 1, 2}); }, {"3 offsets", "3 strands", "4"});
-  expectThrow<Invalid>([&] { make(at, {1, 2, 3, 4}); }, {"offset 0 is 1"});
+  expectThrow<Invalid>([&] { make(at, {1, 2, 3, 4}); }, {"offsets[0] is 1"});
   expectThrow<Invalid>([&] { make(at, {0, 5, 4, 6}); }, {"offset 2 is 4", "5"});
   expectThrow<Invalid>([&] { make(at, {}, -1); }, {"threads is -1"});
   roots(1, 2) = INFINITY;
-  expectThrow<Invalid>([&] { make(at); }, {"row 1", "rest root", "inf"});
+  expectThrow<Invalid>([&] { make(at); }, {"row 1", "rest_roots", "inf"});
   roots.setZero();
   rotations(2, 0) = NAN;
-  expectThrow<Invalid>([&] { make(at); }, {"row 2", "rest rotation", "nan"});
+  expectThrow<Invalid>([&] { make(at); }, {"row 2", "rest_rotations", "nan"});
 
   rotations.row(2).setZero();
   const StrandPoser poser = make(at, {0, 1, 3, 3});
   FloatPoints three = FloatPoints::Zero(3, 3), two = FloatPoints::Zero(2, 3);
   expectThrow<Invalid>([&] { poser.pose(two, three); }, {"rest_points", "2 rows", "3"});
   expectThrow<Invalid>([&] { poser.pose(three, two); }, {"posed", "2 rows", "3"});
-  expectThrow<Invalid>([&] { poser.unpose(two, three); }, {"posed", "2 rows", "3"});
+  expectThrow<Invalid>([&] { poser.unpose(two, three); }, {"points", "2 rows", "3"});
   expectThrow<Invalid>([&] { poser.fingerprints(two); }, {"points", "2 rows", "3"});
   expectThrow<Invalid>([&] { poser.repose(two, three); }, {"rest_points", "2 rows", "3"});
   expectThrow<Invalid>([&] { poser.repose(three, two); }, {"points", "2 rows", "3"});

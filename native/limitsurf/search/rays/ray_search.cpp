@@ -307,9 +307,9 @@ void searchRays(const SearchTree& tree, const PointRows& origins, const PointRow
 void checkRays(const PointRows& origins, const PointRows& directions, double max_distance,
                double scale, int threads) {
   checkThreads(threads);
-  checkFinite(origins, "origin", scale);
+  checkFinite(origins, "origins", scale);
   checkRows(directions, origins.rows(), "directions");
-  checkDirections(directions);
+  checkDirections(directions, "directions");
   checkDistance(max_distance);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limitsurf/batch_parts.h"
+#include "limitsurf/number_text.h"
 #include "limitsurf/row_check.h"
 #include "limitsurf/surface/curvature/irregular_curvature.h"
 #include "limitsurf/surface/differential.h"
@@ -88,7 +89,7 @@ void checkCounts(const CurvatureArrays& out, std::size_t rows) {
 void checkCurvatureRadius(double radius) {
   if (!(radius > 0 && radius <= 0.5)) {
     std::ostringstream message;
-    message << "radius is " << radius << "; expected more than 0 and at most 0.5";
+    message << "radius is " << numberText(radius) << "; expected more than 0 and at most 0.5";
     throw std::invalid_argument(message.str());
   }
 }

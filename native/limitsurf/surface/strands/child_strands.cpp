@@ -69,11 +69,11 @@ void resample(const StrandRef& from, Eigen::Ref<Strand, 0, Eigen::OuterStride<3>
 
 void check(const GuideStrands& guides, const ChildRoots& children) {
   if (guides.points_per_strand < 2) {
-    throw std::invalid_argument("guides have " + std::to_string(guides.points_per_strand) +
-                                " points each; expected 2 or more");
+    throw std::invalid_argument("guide_points has " + std::to_string(guides.points_per_strand) +
+                                " points for each guide; expected 2 or more");
   }
   const Eigen::Index count = guides.normals.rows(), rows = children.position.rows();
-  checkRows("guide_points", guides.points.rows(), count * guides.points_per_strand);
+  checkRows("guide_normals", count, guides.points.rows() / guides.points_per_strand);
   checkRows("normals", children.normal.rows(), rows);
   const auto size = static_cast<std::size_t>(rows) * static_cast<std::size_t>(children.guides);
   if (children.guide.size() != size || children.weight.size() != size) {

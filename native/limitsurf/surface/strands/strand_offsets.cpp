@@ -13,11 +13,11 @@ void checkOffsets(const std::vector<std::int64_t>& offsets, std::size_t strands)
                                 std::to_string(strands + 1));
   }
   if (offsets[0] != 0) {
-    throw std::invalid_argument("offset 0 is " + std::to_string(offsets[0]) + "; expected 0");
+    throw std::invalid_argument("offsets[0] is " + std::to_string(offsets[0]) + "; expected 0");
   }
   for (std::size_t i = 1; i < offsets.size(); ++i) {
     if (offsets[i] < offsets[i - 1]) {
-      throw std::invalid_argument("offset " + std::to_string(i) + " is " +
+      throw std::invalid_argument("offsets[" + std::to_string(i) + "] is " +
                                   std::to_string(offsets[i]) + ", less than the one before it, " +
                                   std::to_string(offsets[i - 1]));
     }

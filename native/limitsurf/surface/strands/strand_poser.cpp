@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
 #include "limitsurf/row_check.h"
@@ -38,16 +39,16 @@ void prefetchTile(const TileTable& table, TileRef tile) {
 std::string rowText(const float* row, int count) {
   std::ostringstream text;
   for (int i = 0; i < count; ++i) {
-    text << (i == 0 ? "(" : ", ") << row[i];
+    text << (i == 0 ? "(" : ", ") << numberText(row[i]);
   }
   text << ")";
   return text.str();
 }
 
-void checkFinite(const char* what, std::size_t row, const float* values, int count) {
+void checkFinite(const char* name, std::size_t row, const float* values, int count) {
   if (!std::all_of(values, values + count, [](float x) { return std::isfinite(x); })) {
-    throw std::invalid_argument("row " + std::to_string(row) + ": the " + what + " is " +
-                                rowText(values, count));
+    throw std::invalid_argument("row " + std::to_string(row) + ": " + name + " is " +
+                                rowText(values, count) + ", which is not finite");
   }
 }
 
@@ -58,7 +59,7 @@ void checkMap(const Eigen::Matrix4d& map) {
       const bool is_right = row < 3 ? std::isfinite(value) : value == (column == 3 ? 1 : 0);
       if (!is_right) {
         std::ostringstream message;
-        message << "matrix has " << value << " in row " << row << ", column " << column
+        message << "matrix has " << numberText(value) << " in row " << row << ", column " << column
                 << (row < 3 ? "; expected a finite number" : "; expected (0, 0, 0, 1) in row 3");
         throw std::invalid_argument(message.str());
       }
@@ -255,8 +256,8 @@ void StrandPoser::Data::bind(Span<Location> at, const RowsIn<FloatPoints>& rest_
     surface.tiles->check(at, static_cast<std::size_t>(row));
   }
   for (const int row : rows) {
-    checkFinite("rest root", static_cast<std::size_t>(row), rowOf(rest_roots, row), 3);
-    checkFinite("rest rotation", static_cast<std::size_t>(row), rowOf(rest_rotations, row), 4);
+    checkFinite("rest_roots", static_cast<std::size_t>(row), rowOf(rest_roots, row), 3);
+    checkFinite("rest_rotations", static_cast<std::size_t>(row), rowOf(rest_rotations, row), 4);
   }
 
   bound.resize(rows.size());
@@ -353,12 +354,12 @@ StrandPoser::Reposed StrandPoser::repose(const RowsIn<FloatPoints>& rest_points,
   return result;
 }
 
-void StrandPoser::unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> rest_points,
+void StrandPoser::unpose(const RowsIn<FloatPoints>& points, RowsOut<FloatPoints> rest_points,
                          const Eigen::Matrix4d& to_strands, const std::vector<char>& only,
                          int threads) const {
   checkThreads(threads);
   checkMap(to_strands);
-  checkRows("posed", posed.rows(), pointCount());
+  checkRows("points", points.rows(), pointCount());
   checkRows("rest_points", rest_points.rows(), pointCount());
   if (!only.empty()) {
     checkRows("only", static_cast<Eigen::Index>(only.size()),
@@ -370,7 +371,7 @@ void StrandPoser::unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> 
     if (isWanted(row)) {
       const Motion back = motion.inverse();
       for (std::int64_t i = data.begin(row), end = data.begin(row + 1); i < end; ++i) {
-        back.move(rowOf(posed, i), rowOf(rest_points, i));
+        back.move(rowOf(points, i), rowOf(rest_points, i));
       }
     }
   });
@@ -378,7 +379,7 @@ void StrandPoser::unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> 
     const auto row = static_cast<std::size_t>(unbound_row);
     if (isWanted(row)) {
       const std::int64_t first = data.begin(row), count = data.begin(row + 1) - first;
-      rest_points.middleRows(first, count) = posed.middleRows(first, count);
+      rest_points.middleRows(first, count) = points.middleRows(first, count);
     }
   }
 }

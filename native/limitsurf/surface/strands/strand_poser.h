@@ -96,7 +96,7 @@ class StrandPoser {
 
   /// The inverse: the rest shape of points that lie on the surface as it is posed. With `only`, one
   /// flag per strand, points of other strands are not written.
-  void unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> rest_points,
+  void unpose(const RowsIn<FloatPoints>& points, RowsOut<FloatPoints> rest_points,
               const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(),
               const std::vector<char>& only = {}, int threads = 0) const;
 
