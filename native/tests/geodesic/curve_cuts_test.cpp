@@ -338,7 +338,7 @@ TEST(CurveCuts, NameWhatIsWrong) {
   options.cut_curves.points(1, 1) = 1;
   options.cut_curves.offsets = {0, 3};
   expectThrow<std::invalid_argument>([&] { guideWeights(surface, at, at, options); },
-                                     {"number of points, 2"});
+                                     {"cut_offsets", "rows of cut_points, 2"});
 }
 
 TEST(CurveCuts, OfOnePointOrNoneCutNothing) {

@@ -395,7 +395,7 @@ TEST(StrandPoser, BadInputIsNamed) {
   expectThrow<Invalid>([&] { make({at[0], at[1]}); }, {"rest_roots", "3 rows", "2"});
   expectThrow<Invalid>([&] { make(at, {0, 1, 2}); }, {"3 offsets", "3 strands", "4"});
   expectThrow<Invalid>([&] { make(at, {1, 2, 3, 4}); }, {"offsets[0] is 1"});
-  expectThrow<Invalid>([&] { make(at, {0, 5, 4, 6}); }, {"offset 2 is 4", "5"});
+  expectThrow<Invalid>([&] { make(at, {0, 5, 4, 6}); }, {"offsets[2] is 4", "5"});
   expectThrow<Invalid>([&] { make(at, {}, -1); }, {"threads is -1"});
   roots(1, 2) = INFINITY;
   expectThrow<Invalid>([&] { make(at); }, {"row 1", "rest_roots", "inf"});
