@@ -156,17 +156,11 @@ class OBJECT_OT_limit_hair_from_particles(
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
-        how, why = "", ""
+        why = ""
         with all_or_nothing(context, surface):
             material = _found(made.material)
             hair = new_hair.add(context, ids.HAIR_OBJECT, surface, made.strands, material)
-            if made.bindings:
-                made.bindings.write(hair)
-                how = "by Geometry Nodes"
-            elif self.follow == "LIVE":
-                depsgraph = context.evaluated_depsgraph_get()
-                live_binding.LiveRequest(surface, depsgraph, [hair]).write(context)
-                how = "live"
+            how = live_binding.have_follow(context, surface, hair, made.bindings, self.follow)
         if not how and self.follow == "AUTO" and can_deform(surface):
             why = why_not_automatic(surface)
         context.view_layer.update()

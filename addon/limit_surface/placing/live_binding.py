@@ -116,6 +116,25 @@ class LiveRequest:
         return LiveOutcome(self._surface.name, count)
 
 
+def have_follow(
+    context: bpy.types.Context,
+    surface: bpy.types.Object,
+    ob: bpy.types.Object,
+    bindings: following.Bindings | None,
+    follow: str,
+) -> str:
+    """Has a new object follow its surface by nodes, if there are bindings for that, or live if that
+    was chosen. Returns how it follows, for the report; nothing if it stays where it is.
+    """
+    if bindings:
+        bindings.write(ob)
+        return "by Geometry Nodes"
+    if follow == "LIVE":
+        LiveRequest(surface, context.evaluated_depsgraph_get(), [ob]).write(context)
+        return "live"
+    return ""
+
+
 def _check_kind(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
         raise RefusalError(

@@ -92,7 +92,8 @@ class Rebinding:
         max_distance: float = math.inf,
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        following_now = [ob for ob in bound_to(surface) if is_own(ob)]
+        on_surface = bound_to(surface)
+        following_now = [ob for ob in on_surface if is_own(ob)]
         bound = list(dict.fromkeys([*following_now, *things]))
         # For control points that were added there are no places that could be kept.
         self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
@@ -124,7 +125,7 @@ class Rebinding:
             self._find = ByFace(self._posed)
         self._target, self.bound, self.uv_maps = surface, bound, maps.names
         self._surface, self._names = surface.name, [ob.name for ob in bound]
-        self._overridden = [ob.name for ob in bound_to(surface) if not is_own(ob)]
+        self._overridden = [ob.name for ob in on_surface if not is_own(ob)]
         self._by_nodes = [ob for ob in kept if ob not in self._live]
 
     def compute(self, context: bpy.types.Context) -> Pieces:

@@ -194,14 +194,7 @@ class ScatterOperator(
             if quality < setup.QUALITY:
                 self.report({"WARNING"}, f"Quality is {quality}, {setup.LOW_QUALITY_REASON}")
         ob = self.add(context, surface, made.things)
-        if made.bindings:
-            made.bindings.write(ob)
-            return "by Geometry Nodes"
-        if self.follow == "LIVE":
-            depsgraph = context.evaluated_depsgraph_get()
-            live_binding.LiveRequest(surface, depsgraph, [ob]).write(context)
-            return "live"
-        return ""
+        return live_binding.have_follow(context, surface, ob, made.bindings, self.follow)
 
     def maker(self, found: cage.Cage) -> Any:
         """Returns a function of the ground and of progress. It returns what `add` is called with,

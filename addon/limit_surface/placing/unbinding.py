@@ -236,10 +236,8 @@ def remove_leftovers(surface: bpy.types.Object) -> str:
     """Removes those tables, and *Limit Capture* if nothing follows the surface. Returns a sentence
     for the report.
     """
-    leftovers, had_capture = (
-        leftovers_of(surface),
-        any(groups.modifiers(surface, ids.CAPTURE_GROUP)),
-    )
+    leftovers = leftovers_of(surface)
+    had_capture = any(groups.modifiers(surface, ids.CAPTURE_GROUP))
     count, of_tiles = len(leftovers), [ob for ob in leftovers if tables.surface_of(ob)]
     _remove_unused(of_tiles, {surface})
     has_capture = any(groups.modifiers(surface, ids.CAPTURE_GROUP))

@@ -7,7 +7,7 @@
 
 #include "limitsurf/error.h"
 #include "limitsurf/interruption_point.h"
-#include "limitsurf/number_text.h"
+#include "limitsurf/surface/location_batch.h"
 
 namespace limitsurf {
 namespace {
@@ -97,10 +97,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> PtexLayout::mapCoordin
       throw LocationError("row " + std::to_string(row) + ": face " + std::to_string(place.face) +
                           " is not among the " + std::to_string(faces_) + " Ptex faces");
     }
-    if (!(place.u >= 0 && place.u <= 1 && place.v >= 0 && place.v <= 1)) {
-      throw LocationError("row " + std::to_string(row) + ": uv is (" + numberText(place.u) + ", " +
-                          numberText(place.v) + "), which is outside [0, 1]");
-    }
+    checkParameters(place, row);
     const Pixel first = origin(place.face);
     result.row(static_cast<Eigen::Index>(row)) << (first.x + 0.5 + resolution_ * place.u) / width(),
         (first.y + 0.5 + resolution_ * place.v) / height();

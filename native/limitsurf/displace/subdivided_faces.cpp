@@ -10,7 +10,6 @@
 
 #include "limitsurf/displace/face_grid.h"
 #include "limitsurf/displace/subdivided_vertices.h"
-#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -191,11 +190,7 @@ Location SubdividedFaces::locate(const Location& at) const {
 std::vector<Location> SubdividedFaces::locate(const LocationBatch& at, int threads) const {
   checkThreads(threads);
   for (std::size_t row = 0; row < at.size(); ++row) {
-    const Location place = at[row];
-    if (!(place.u >= 0 && place.u <= 1 && place.v >= 0 && place.v <= 1)) {
-      throw LocationError("row " + std::to_string(row) + ": uv is (" + numberText(place.u) + ", " +
-                          numberText(place.v) + "), which is outside [0, 1]");
-    }
+    checkParameters(at[row], row);
   }
   std::vector<Location> result(at.size());
   parallelFor(at.size(), kLocationsPerTask, threads, [&](std::size_t begin, std::size_t end) {

@@ -33,8 +33,8 @@ Vector3 inUnit(const Vector3& direction) {
 /// Most rows look at a few leaves and parts of patches, but among sheets that lie on each other, or
 /// on patches that are nearly lines, at thousands. So many take about a millisecond.
 constexpr std::int64_t kWorkPerPass = 1024;
-/// A task that has looked at so many leaves its other rows to smaller tasks: the calling thread may
-/// wait for the tasks of others, and hears no interruption until these end.
+/// A task that has looked at so many leaves its other rows to smaller tasks, in which all threads
+/// can share: a few hundred rows that take long would be one task.
 constexpr std::int64_t kWorkPerTask = 1 << 15;
 /// By how much those are smaller.
 constexpr std::size_t kSmaller = 8;

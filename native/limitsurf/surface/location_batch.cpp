@@ -5,7 +5,17 @@
 #include <string>
 #include <type_traits>
 
+#include "limitsurf/error.h"
+#include "limitsurf/number_text.h"
+
 namespace limitsurf {
+
+void checkParameters(const Location& at, std::size_t row, const char* uv_word) {
+  if (!(at.u >= 0 && at.u <= 1 && at.v >= 0 && at.v <= 1)) {
+    throw LocationError("row " + std::to_string(row) + ": " + uv_word + " is (" + numberText(at.u) +
+                        ", " + numberText(at.v) + "), which is outside [0, 1]");
+  }
+}
 
 LocationBatch::LocationBatch(const Location* locations, std::size_t count)
     : face_step_(sizeof(Location)), uv_step_(sizeof(Location)), size_(count) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -9,6 +10,9 @@
 namespace limitsurf {
 
 struct TiledSurface;
+
+/// Throws LocationError unless u and v are in [0, 1]. `uv_word` is what the message calls them.
+void checkParameters(const Location& at, std::size_t row, const char* uv_word = "uv");
 
 /// The locations of a batch call. Any Span or vector of locations converts to one, and so do an
 /// array of faces and an array of (u, v), as other programs keep them. The call then checks them.

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <sstream>
 
-#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -40,11 +39,7 @@ void TiledSurface::check(const LocationBatch& at, std::size_t row) const {
             << " Ptex faces";
     throw LocationError(message.str());
   }
-  if (!inside(location.u) || !inside(location.v)) {
-    message << at.uv_word_ << " is (" << numberText(location.u) << ", " << numberText(location.v)
-            << "), which is outside [0, 1]";
-    throw LocationError(message.str());
-  }
+  checkParameters(location, row, at.uv_word_);
   const int base = ptex.base_face[location.face];
   message << "Ptex face " << face << " belongs to face " << base
           << ", which has no limit surface: " << refused.at(base);

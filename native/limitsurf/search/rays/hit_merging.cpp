@@ -27,16 +27,17 @@ class MergedHits {
  private:
   /// So many hits are compared with one by one. If there are more within reach, as in a stack of
   /// sheets, those on neighbouring faces are looked up by the vertices of faces with few of them.
-  static constexpr std::size_t kFewHits = 16, kFewVertices = 8;
+  static constexpr std::ptrdiff_t kFewHits = 16;
+  static constexpr std::size_t kFewVertices = 8;
 
   bool isKnown(const RayHit& hit) {
-    std::size_t place = kept_.size();
-    for (std::size_t few = kFewHits; place > 0 && isWithinReach(kept_[place - 1], hit); --few) {
-      if (few == 0 && vertices(hit.at.face).size() <= kFewVertices) {
+    const bool is_on_large_face = vertices(hit.at.face).size() > kFewVertices;
+    for (auto other = kept_.rbegin(); other != kept_.rend() && isWithinReach(*other, hit);
+         ++other) {
+      if (other - kept_.rbegin() == kFewHits && !is_on_large_face) {
         return isKnownNearby(hit);
       }
-      --place;
-      if (isSame(kept_[place], hit)) {
+      if (isSame(*other, hit)) {
         return true;
       }
     }
