@@ -37,7 +37,7 @@ class WorkerInterruption {
   ~WorkerInterruption() {
     try {
       settle();
-    } catch (...) {
+    } catch (...) {  // NOLINT(bugprone-empty-catch): a destructor throws nothing
       // The task is done, or ends with an exception of its own; the caller will be asked again.
     }
   }

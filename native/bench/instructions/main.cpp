@@ -19,6 +19,7 @@
 #include "limitsurf/surface/limit_surface.h"
 #include "support/cages/benchmark_cages.h"
 #include "support/cages/meshes.h"
+#include "support/cages/strange_meshes.h"
 #include "support/random.h"
 
 namespace limitsurf::test {
@@ -60,6 +61,18 @@ Points pointsNear(const LimitSurface& surface, int count) {
     points.row(row) += random.vector(0.3);
   }
   return points;
+}
+
+/// A pole whose edges have all their own sharpness.
+Cage creasedPole(int triangles) {
+  Cage cage = pole(triangles);
+  cage.options.creasing = Creasing::chaikin;
+  Random random(5);
+  for (int i = 1; i <= triangles; ++i) {
+    cage.options.edge_sharpness.edges.push_back({0, i});
+    cage.options.edge_sharpness.values.push_back(random.uniform(0, 3));
+  }
+  return cage;
 }
 
 LimitSurface regular() { return limitSurface(perturbed(grid(20, 20), 0.1, 1)); }
@@ -110,6 +123,8 @@ constexpr Work kWork[] = {
        const LimitSurface surface = regular();
        AreaSampler(surface, 1).uniform(n, 1, {}, 1);
      }},
+    {"open, a pole with semi-sharp edges", [](int n) { limitSurface(creasedPole(n)); }},
+    {"open, faces on one edge", [](int n) { limitSurface(book(n)); }},
     {"pose, irregular",
      [](int n) {
        LimitSurface surface = limitSurface(mixture(3));

@@ -29,6 +29,74 @@ void copyEntry(Map& map, int from, int to) {
   }
 }
 
+/// The sharp edges at a vertex in which several fans meet that do not belong to one of its fans.
+/// All edges are looked at once for a vertex, not for each fan: thousands of faces may share one
+/// edge.
+class EdgesOfOtherFans {
+ public:
+  explicit EdgesOfOtherFans(const OpenSubdiv::Far::TopologyLevel& level) : level_(level) {}
+
+  /// Their sharpness, in any order. Of the infinitely sharp ones there are at most as many as make
+  /// a vertex a corner: more of them change neither its rule nor the sharpness of its other edges.
+  std::vector<float> of(const Topology::SplitFan& fan) {
+    if (fan.vertex != vertex_) {
+      findSharpEdges(fan.vertex);
+    }
+    findOwnEdges(fan);
+    std::vector<float> others;
+    for (const int edge : semi_sharp_) {
+      if (!std::binary_search(own_.begin(), own_.end(), edge)) {
+        others.push_back(level_.GetEdgeSharpness(edge));
+      }
+    }
+    // The last edge of an open fan that follows a crease stands for the crease's second edge.
+    const bool stands_for_crease = fan.followsCrease() && !fan.closed;
+    int infinitely_sharp = infinitely_sharp_ - (stands_for_crease ? not_manifold_ : 0);
+    for (const int edge : own_) {
+      infinitely_sharp -= isInfinitelySharp(level_.GetEdgeSharpness(edge)) &&
+                          !(stands_for_crease && level_.IsEdgeNonManifold(edge));
+    }
+    others.insert(others.end(), std::min(infinitely_sharp, kEdgesOfCorner), kInfinitelySharp);
+    return others;
+  }
+
+ private:
+  static constexpr int kEdgesOfCorner = 3;
+
+  void findSharpEdges(int vertex) {
+    vertex_ = vertex;
+    semi_sharp_.clear();
+    infinitely_sharp_ = not_manifold_ = 0;
+    for (const int edge : level_.GetVertexEdges(vertex)) {
+      const float sharpness = level_.GetEdgeSharpness(edge);
+      if (isSemiSharp(sharpness)) {
+        semi_sharp_.push_back(edge);
+      } else if (isSharp(sharpness)) {
+        ++infinitely_sharp_;
+        not_manifold_ += level_.IsEdgeNonManifold(edge);
+      }
+    }
+  }
+
+  void findOwnEdges(const Topology::SplitFan& fan) {
+    own_.clear();
+    for (const auto& [face, corner] : fan.faces) {
+      const auto edges = level_.GetFaceEdges(face);
+      own_.push_back(edges[corner]);
+      own_.push_back(edges[(corner + edges.size() - 1) % edges.size()]);
+    }
+    std::sort(own_.begin(), own_.end());
+    own_.erase(std::unique(own_.begin(), own_.end()), own_.end());
+  }
+
+  const OpenSubdiv::Far::TopologyLevel& level_;
+  int vertex_ = -1;
+  std::vector<int> semi_sharp_;
+  int infinitely_sharp_ = 0;
+  int not_manifold_ = 0;  // edges among the infinitely sharp ones
+  std::vector<int> own_;  // the edges of the fan, sorted
+};
+
 }  // namespace
 
 CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology) : topology_(topology) {
@@ -87,12 +155,14 @@ void CageMesh::findSmoothVertices() {
 }
 
 void CageMesh::splitVertices() {
+  EdgesOfOtherFans edges_of_other_fans(topology_.level());
   InterruptionStride stride;
   for (int vertex = own_points_; vertex < vertex_count_; ++vertex) {
     for (const auto& [face, corner] : topology_.splitFans()[vertex - own_points_].faces) {
       own_corner_vertices_[cornerNumber({face, corner})] = vertex;
     }
     setSplitFan(vertex);
+    other_fans_edges_[vertex] = edges_of_other_fans.of(topology_.splitFans()[vertex - own_points_]);
     stride.step();
   }
 }
@@ -104,23 +174,8 @@ void CageMesh::setSplitFan(int vertex) {
   fan_sharpness_[vertex - own_points_] = cage_sharpness_ ? cage_sharpness_[split.vertex] : 0;
   copyEntry(averaged_edges_, split.vertex, vertex);
   copyEntry(lasting_corners_, split.vertex, vertex);
-  const auto& level = topology_.level();
-  std::vector<int> own;
-  for (const auto& [face, corner] : split.faces) {
-    const auto edges = level.GetFaceEdges(face);
-    own.push_back(edges[corner]);
-    own.push_back(edges[(corner + edges.size() - 1) % edges.size()]);
-  }
   if (split.followsCrease()) {
     crease_ends_[vertex] = split.crease_ends;
-  }
-  const bool last_stands_for_crease = split.followsCrease() && !split.closed;
-  std::vector<float>& others = other_fans_edges_[vertex];
-  for (const int edge : level.GetVertexEdges(split.vertex)) {
-    if (std::find(own.begin(), own.end(), edge) == own.end() &&
-        !(last_stands_for_crease && level.IsEdgeNonManifold(edge))) {
-      others.push_back(level.GetEdgeSharpness(edge));
-    }
   }
 }
 

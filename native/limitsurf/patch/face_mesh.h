@@ -99,8 +99,8 @@ class FaceMesh {
     return {fan.first < 0 ? FaceCorner{} : cornerAt(fan.first), fan.faces, fan.closed,
             cage_sharpness_ ? cage_sharpness_[vertex] : 0};
   }
-  /// The sharpness of those edges at the vertex that belong to none of its fan's faces; null if
-  /// there are none.
+  /// The sharpness of those sharp edges at the vertex that belong to none of its fan's faces, but
+  /// of at most three that are infinitely sharp; null if there are none.
   const std::vector<float>* edgesOfOtherFans(int vertex) const {
     if (other_fans_edges_.empty()) {
       return nullptr;

@@ -30,17 +30,10 @@ float RefinedMesh::childSharpness(FaceCorner side) const {
   if (crease_.IsUniform()) {
     return crease_.SubdivideUniformSharpness(parent_.sharpness(side));
   }
-  const int vertex = parent_.vertex(side);
-  int index = 0, i = 0;
-  parent_.forEachAround(parent_.fan(vertex), [&](FaceCorner at) {
-    if (at == side) {
-      index = i;
-    }
-    ++i;
-  });
-  SharpnessAround around;
-  getSubdivided(vertex, around);
-  return around.child_edges[index];
+  // Under Chaikin's rule the faces around all vertices at which new points are needed are refined
+  // (markVertices), so that both ends of the edge have children, and subdivideSharpness() knows
+  // them.
+  return side_sharpness_own_[4 * static_cast<std::size_t>(child(side))];
 }
 
 int RefinedMesh::edgePoint(FaceCorner side) {

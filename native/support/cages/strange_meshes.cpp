@@ -160,6 +160,19 @@ Cage moebius(int count) {
 
 }  // namespace
 
+Cage book(int pages) {
+  Cage cage;
+  cage.positions.resize(2 + 2 * Eigen::Index{pages}, 3);
+  cage.positions.topRows(2) << 0, 0, 0, 0, 0, 2;
+  for (int page = 0; page < pages; ++page) {
+    const int bottom = 2 + 2 * page;
+    cage.positions.row(bottom) << std::cos(page), std::sin(page), 0.1;
+    cage.positions.row(bottom + 1) << std::cos(page), std::sin(page), 2.1;
+    cage.faces.push_back({0, 1, bottom + 1, bottom});
+  }
+  return cage;
+}
+
 NamedCages nonManifoldCages() {
   NamedCages cages;
   const auto take = [&](const std::string& name, Cage cage) {
@@ -191,10 +204,7 @@ NamedCages nonManifoldCages() {
   raise(cage, {11, 12, 13}, {0, 0.1, -1});
   take("three and four faces on an edge", cage);
   take("boxes with two walls", boxesWithWall({{1, 3, 7, 5}, {1, 5, 7, 3}}));
-  cage = Cage();
-  for (int i = 0; i < 2; ++i) add(cage, {0, 0, 2.0 * i});
-  for (int page = 0; page < 5; ++page) raise(cage, {0, 1}, {std::cos(page), std::sin(page), 0.1});
-  take("five pages", cage);
+  take("five pages", book(5));
   // Opposite winding.
   take("one face turned", withTurned(lattice(), {5}));
   take("half of the faces turned", withTurned(lattice(), {8, 9, 10, 11, 12, 13, 14, 15}));

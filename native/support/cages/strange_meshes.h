@@ -16,6 +16,9 @@ using NamedCages = std::vector<std::pair<std::string, Cage>>;
 /// have different vertices.
 NamedCages nonManifoldCages();
 
+/// Quads that share one edge, the edge of the vertices 0 and 1.
+Cage book(int pages);
+
 /// Fans of faces at a vertex in the middle of a crease where three sheets meet, which is not their
 /// own boundary on both sides: closed ones, and others that begin and end at the same edge of the
 /// crease. OpenSubdiv 3.5 moves the vertex along that crease, later versions do not.
