@@ -82,6 +82,8 @@ def _with_edges_of_two(vertex: np.ndarray, ends: np.ndarray, edge: np.ndarray) -
     """A vertex at which exactly two edges meet gets the sum of their sharpness, in addition to its
     own.
     """
+    if not edge.any():
+        return vertex
     least = np.full(len(vertex), np.inf, np.float32)
     np.minimum.at(least, ends, edge[:, None])
     of_two = np.bincount(ends.ravel(), minlength=len(vertex)) == 2
