@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "limitsurf/interruptible_sort.h"
+
 namespace limitsurf {
 namespace {
 
@@ -23,7 +25,9 @@ MeshEdges::MeshEdges(const ControlMesh& mesh) {
   const std::size_t all = mesh.faceVertices().size();
   std::vector<Corner> corners;
   corners.reserve(all);
+  InterruptionStride stride;
   for (int face = 0; face < mesh.faceCount(); ++face) {
+    stride.step();
     const Span<int> of_face = mesh.faceVertices(face);
     for (std::size_t i = 0; i < of_face.size(); ++i) {
       const int a = of_face[i], b = of_face[(i + 1) % of_face.size()];
@@ -33,12 +37,13 @@ MeshEdges::MeshEdges(const ControlMesh& mesh) {
       }
     }
   }
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+  sortInterruptibly(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return a.vertices != b.vertices ? a.vertices < b.vertices : a.number < b.number;
   });
   // The edges by their first corner: `first` is the place of that corner among the sorted ones.
   std::vector<std::size_t> first;
   for (std::size_t i = 0; i < corners.size(); ++i) {
+    stride.step();
     if (i == 0 || corners[i].vertices != corners[i - 1].vertices) {
       first.push_back(i);
     }
@@ -48,12 +53,13 @@ MeshEdges::MeshEdges(const ControlMesh& mesh) {
   for (std::size_t i = 0; i < order.size(); ++i) {
     order[i] = i;
   }
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  sortInterruptibly(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return corners[first[a]].number < corners[first[b]].number;
   });
   of_corner_.assign(all, -1);
   first_use_.push_back(0);
   for (const std::size_t place : order) {
+    stride.step();
     const int edge = count();
     const Corner& at = corners[first[place]];
     const Span<int> of_face = mesh.faceVertices(at.use.face);

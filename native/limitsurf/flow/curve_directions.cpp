@@ -41,17 +41,14 @@ struct Samples {
 };
 
 Samples sample(const Polylines& curves, double spacing) {
-  constexpr double kMostPieces = 1 << 20;  // of one line
-  const auto pieces = [&](const Vector3& from, const Vector3& to) {
-    return static_cast<int>(std::clamp(std::ceil((to - from).norm() / spacing), 1., kMostPieces));
-  };
-  Eigen::Index count = 0;
-  forEachLine(curves, [&](const Vector3& from, const Vector3& to) { count += pieces(from, to); });
+  const auto count = static_cast<Eigen::Index>(countPieces(curves, spacing, "points"));
   Samples samples{Points(count, 3), Points(count, 3)};
   Eigen::Index row = 0;
+  InterruptionStride stride;
   forEachLine(curves, [&](const Vector3& from, const Vector3& to) {
-    const int parts = pieces(from, to);
+    const auto parts = static_cast<double>(piecesOfLine(from, to, spacing));
     for (int i = 0; i < parts; ++i, ++row) {
+      stride.step();
       samples.middle.row(row) = from + (i + 0.5) / parts * (to - from);
       samples.along.row(row) = (to - from) / parts;
     }

@@ -7,6 +7,7 @@
 
 #include "limitsurf/geodesic/triangle_cells.h"
 #include "limitsurf/geodesic/triangle_cutter.h"
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/own_unit.h"
 #include "limitsurf/search/surface_search.h"
 
@@ -54,22 +55,29 @@ double typicalSide(const SurfaceTriangles& triangles) {
 
 void sampleLine(const Vector3& from, const Vector3& to, double spacing,
                 std::vector<Vector3>& points) {
-  constexpr double kMostPieces = 1 << 20;
-  const double pieces = std::clamp(std::ceil((to - from).norm() / spacing), 1., kMostPieces);
-  for (int i = 1; i <= static_cast<int>(pieces); ++i) {
+  const auto pieces = static_cast<double>(piecesOfLine(from, to, spacing));
+  InterruptionStride stride;
+  for (int i = 1; i <= pieces; ++i) {
+    stride.step();
     points.push_back(from + i / pieces * (to - from));
   }
 }
 
 Samples sample(const Polylines& curves, double unit, double spacing) {
   Samples samples;
+  samples.points.reserve(
+      static_cast<std::size_t>(countPieces(curves, spacing / unit, "cut_points")) +
+      curves.offsets.size());
+  InterruptionStride stride;
   for (std::size_t curve = 0; curve + 1 < curves.offsets.size(); ++curve) {
+    stride.step();
     const std::int64_t begin = curves.offsets[curve], last = curves.offsets[curve + 1] - 1;
     if (last <= begin) {
       continue;
     }
     samples.points.emplace_back(unit * curves.points.row(begin));
     for (std::int64_t row = begin + 1; row <= last; ++row) {
+      stride.step();
       const Vector3 to = unit * curves.points.row(row), from = samples.points.back();
       if (row == last || (to - from).norm() > kClosest * spacing) {
         sampleLine(from, to, spacing, samples.points);
@@ -98,11 +106,14 @@ void cutInUnit(SurfaceTriangles& triangles, double unit, const LimitSurface& sur
   const Hits hits = SurfaceSearch(surface, threads).closest(points, {}, threads);
   const TriangleCells cells(surface, levels, triangles);
   std::vector<int> triangle(hits.at.size());
+  InterruptionStride stride;
   for (std::size_t row = 0; row < hits.at.size(); ++row) {
+    stride.step();
     triangle[row] = hits.at[row].face < 0 ? -1 : cells.find(triangles, hits.at[row]);
   }
   TriangleCutter cutter(triangles);
   const auto insert = [&](std::size_t row, double tolerance) {
+    InterruptionPoint::pass();  // a triangle that has been cut often has many pieces
     return cutter.insert(triangle[row], hits.at[row], tolerance);
   };
   // Ends come last, so that they find the curves at which they end.
@@ -110,6 +121,7 @@ void cutInUnit(SurfaceTriangles& triangles, double unit, const LimitSurface& sur
     int second, last_but_one;  // points; -1 where there is no sample between the ends
   };
   std::vector<Ends> ends;
+  ends.reserve(samples.first.size());
   for (std::size_t curve = 0; curve + 1 < samples.first.size(); ++curve) {
     Ends of_curve{-1, -1};
     for (std::size_t row = samples.first[curve] + 1; row + 1 < samples.first[curve + 1]; ++row) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include "limitsurf/interruptible_sort.h"
+
 namespace limitsurf {
 
 std::vector<std::uint8_t> cutCorners(const ControlMesh& mesh, const EdgeList& edges) {
@@ -14,14 +16,17 @@ std::vector<std::uint8_t> cutCorners(const ControlMesh& mesh, const EdgeList& ed
   const auto sorted = [](std::int64_t a, std::int64_t b) { return std::minmax({a, b}); };
   EdgeList wanted;
   wanted.reserve(edges.size());
+  InterruptionStride stride;
   for (const auto& [a, b] : edges) {
+    stride.step();
     wanted.push_back(sorted(a, b));
   }
   EdgeList known = wanted;
-  std::sort(known.begin(), known.end());
+  sortInterruptibly(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   std::vector<std::uint8_t> found(known.size());
   for (int face = 0; face < mesh.faceCount(); ++face) {
+    stride.step();
     const Span<int> vertices = mesh.faceVertices(face);
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       const std::pair<std::int64_t, std::int64_t> edge =
@@ -34,6 +39,7 @@ std::vector<std::uint8_t> cutCorners(const ControlMesh& mesh, const EdgeList& ed
     }
   }
   for (std::size_t row = 0; row < wanted.size(); ++row) {
+    stride.step();
     const auto at = std::lower_bound(known.begin(), known.end(), wanted[row]);
     if (!found[static_cast<std::size_t>(at - known.begin())]) {
       throw MeshError("cuts: row " + std::to_string(row) + ": vertices " +

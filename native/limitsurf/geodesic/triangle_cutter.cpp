@@ -8,6 +8,7 @@
 #include <queue>
 
 #include "limitsurf/geodesic/triangle_cells.h"
+#include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
 namespace {
@@ -33,7 +34,9 @@ TriangleCutter::TriangleCutter(SurfaceTriangles& triangles)
     : triangles_(triangles),
       around_(triangles.points.size()),
       whole_count_(triangles.vertices.size()) {
+  InterruptionStride stride;
   for (std::size_t number = 0; number < whole_count_; ++number) {
+    stride.step();
     for (const int point : triangles.vertices[number]) {
       around_[point].push_back(static_cast<int>(number));
     }
@@ -236,7 +239,9 @@ void TriangleCutter::connect(int from, int to) {
       (triangles_.points[to] - triangles_.points[from]).cross(normal).normalized();
   int at = from;
   double nearest = distance(from, to);
+  InterruptionStride stride;
   while (!isSide(at, to)) {
+    stride.step();
     const std::optional<Crossing> found = nextCrossing(at, to, across);
     const int next = !found                         ? at
                      : found->share < kThroughPoint ? found->a
@@ -269,7 +274,9 @@ void TriangleCutter::cutShortestWay(int from, int to) {
   using Waiting = std::pair<double, int>;
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting;
   waiting.push({0, from});
+  InterruptionStride stride;
   while (!waiting.empty() && waiting.top().second != to) {
+    stride.step();
     const auto [length, point] = waiting.top();
     waiting.pop();
     if (length > reached[point].length) {

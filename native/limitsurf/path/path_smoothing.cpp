@@ -92,8 +92,9 @@ PathPoints evenPath(const LimitSurface& surface, const SurfaceSearch& search,
                     const std::vector<Location>& path, int count, int threads) {
   checkThreads(threads);
   checkPath(path.size());
-  if (count < 2) {
-    throw std::invalid_argument("count is " + std::to_string(count) + "; it must be 2 or more");
+  if (count < 2 || count > kMostPathPoints) {
+    throw std::invalid_argument("count is " + std::to_string(count) + "; it must be 2 to " +
+                                std::to_string(kMostPathPoints));
   }
   const Points position = surface.evaluate(path, Derivatives::none, false, threads).position;
   std::vector<double> length{0};
@@ -101,7 +102,10 @@ PathPoints evenPath(const LimitSurface& surface, const SurfaceSearch& search,
     length.push_back(length.back() + step);
   }
   std::vector<Vector3> wanted;
+  wanted.reserve(static_cast<std::size_t>(count));
+  InterruptionStride stride;
   for (int i = 1; i + 1 < count; ++i) {
+    stride.step();
     const double at = length.back() * i / (count - 1);
     const auto next = std::upper_bound(length.begin() + 1, length.end() - 1, at);
     const auto row = static_cast<Eigen::Index>(next - length.begin());

@@ -28,10 +28,14 @@ PathPoints smoothPath(const LimitSurface& surface, const SurfaceSearch& search,
                       const std::vector<Location>& path, const Eigen::VectorXd& weights,
                       int iterations, bool closed, int threads = 0);
 
+/// The largest number of points of an even path.
+constexpr int kMostPathPoints = 10'000'000;
+
 /// `count` points of the surface, closest to the places that divide the polyline through the path's
 /// points into parts of equal length. The first and the last are those of the path.
 ///
-/// Throws as smoothPath() does, and std::invalid_argument for a count below 2.
+/// Throws as smoothPath() does, and std::invalid_argument for a count below 2 or
+/// above kMostPathPoints.
 PathPoints evenPath(const LimitSurface& surface, const SurfaceSearch& search,
                     const std::vector<Location>& path, int count, int threads = 0);
 

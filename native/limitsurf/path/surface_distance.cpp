@@ -7,6 +7,7 @@
 #include <string>
 
 #include "limitsurf/error.h"
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/number_text.h"
 
 namespace limitsurf {
@@ -37,7 +38,9 @@ Hits feet(const SurfaceSearch& search, const Points& points, int threads) {
 
 Hits feet(const SurfaceSearch& search, const std::vector<Vector3>& points, int threads) {
   Points rows(static_cast<Eigen::Index>(points.size()), 3);
+  InterruptionStride stride;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    stride.step();
     rows.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
   }
   return feet(search, rows, threads);

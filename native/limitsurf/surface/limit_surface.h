@@ -10,6 +10,7 @@
 #include "limitsurf/large_pages.h"
 #include "limitsurf/mesh/control_mesh.h"
 #include "limitsurf/mesh/interpolation.h"
+#include "limitsurf/progress.h"
 #include "limitsurf/surface/location_batch.h"
 #include "limitsurf/surface/tiles/surface_tiles.h"
 #include "limitsurf/types.h"
@@ -285,11 +286,11 @@ class LimitSurface {
   ///
   /// Depends on the topology alone, not on the pose. Error: kTilePositionError and
   /// kTileDerivativeError. Throws std::invalid_argument for a max_depth outside
-  /// [1, SurfaceTiles::kLargestDepth]. Cost: O(1) for each location, and O(valence log valence) for
-  /// each tile beside an extraordinary vertex, O(valence^2) at a dart; the rows of its points are
-  /// as long as its neighbourhood is large.
+  /// [1, SurfaceTiles::kLargestDepth], and for more than SurfaceTiles::kMostWeights. Cost: O(1) for
+  /// each location, and O(valence log valence) for each tile beside an extraordinary vertex,
+  /// O(valence^2) at a dart; the rows of its points are as long as its neighbourhood is large.
   SurfaceTiles tiles(const LocationBatch& at, int max_depth = SurfaceTiles::kDefaultDepth,
-                     int threads = 0) const;
+                     int threads = 0, const Progress& progress = {}) const;
 
   /// Where the locations lie in these tiles, without the tiles, whose weights are what takes time.
   /// Cost: O(1) for each location.

@@ -96,7 +96,7 @@ the points of the surface that are closest to the polyline's.
 Returns Locations: .face (count,), .uv (count, 2). Cost: one search for each point.
 
 Raises LocationError for locations that are not on the surface, MeshError for those on refused faces, and
-ValueError for arrays of other shapes and a count below 2.
+ValueError for arrays of other shapes, and for a count below 2 or above 10,000,000.
 )";
 
 Eigen::VectorXd numbers(const py::object& object, const char* name) {

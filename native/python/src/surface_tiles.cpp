@@ -51,7 +51,7 @@ Cost: O(1) a location, O(valence log valence) a tile beside an extraordinary ver
 O(valence^2)).
 
 Raises LocationError for a face or (u, v) that does not exist, MeshError for a face that has no limit
-surface, ValueError for a max_depth out of range.
+surface, ValueError for a max_depth out of range, and for more than 2^28 weights (3 GiB).
 
 Source: Stam 1998 and Lacewell & Burley 2007, the control points of their regular sub-patches.)";
 
@@ -106,7 +106,8 @@ place in the tile is ((u, v) on the face - origin[tile]) * scale, with the `scal
 location, clamped to 0 to 1.
 
 Depends on the topology alone. Cost: O(max_depth) nodes at each irregular vertex, and that of
-tiles() for as many locations. Raises ValueError for a max_depth out of range.)";
+tiles() for as many locations: the tiles around a vertex of N faces have 900 N^2 to 2100 N^2 weights
+at the default depth. Raises ValueError for a max_depth out of range, and for more than 2^28 weights (3 GiB).)";
 
 py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& max_depth,
                         int threads, const py::object& progress) {

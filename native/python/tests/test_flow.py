@@ -77,6 +77,12 @@ def test_progress_reaches_1_and_may_end_the_call(surface, at):
         ([[1, 1, 0], [1, 1, 1]], None, "no part of a curve runs along the surface"),
         (np.empty((0, 3)), None, "no part of a curve"),
         ([[0, 0], [1, 1]], None, r"points has shape \(2, 2\)"),
+        (
+            [[0, 0, 0], [1, 1, 0], [1e9, 1, 0]],
+            None,
+            r"^points: the curves would be divided into more than 10000000 pieces, .*"
+            r"\(1e\+09, 1, 0\) is 999999999 long$",
+        ),
     ],
 )
 def test_curves_that_are_refused(surface, at, points, offsets, match):

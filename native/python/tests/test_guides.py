@@ -59,6 +59,15 @@ def test_cuts_keep_regions_apart(sheet):
     assert (sheet.guide_weights(*guides, *at, 2).guide >= 0).all()
 
 
+def test_curves_of_too_many_pieces_are_refused(sheet):
+    guide = [0], [[0.5, 0.5]]
+    far = [[[0, y, 0], [1e5, y, 0]] for y in np.linspace(0, 6, 200)]
+    with pytest.raises(ValueError, match="^cut_points: .* more than 10000000 pieces, .* long$"):
+        sheet.guide_weights(
+            *guide, *guide, cut_points=np.reshape(far, (-1, 3)), cut_offsets=range(0, 401, 2)
+        )
+
+
 def test_curves_keep_regions_apart(sheet):
     guides = [0, 5, 30], np.full((3, 2), 0.5)
     at = places(sheet, 500, 5)

@@ -365,7 +365,8 @@ def test_errors_name_what_is_wrong(flat):
     assert "values has 1 rows" in refusal(flat.fit_path, path.face, path.uv, 1, values=[1])
     assert "weights[1] is 2" in refusal(flat.smooth_path, path.face, path.uv, [0, 2])
     assert "iterations is -1" in refusal(flat.smooth_path, path.face, path.uv, [0, 1], -1)
-    assert "count is 1" in refusal(flat.even_path, path.face, path.uv, 1)
+    for count in (1, 10_000_001, 2**31 - 1):
+        assert f"count is {count}" in refusal(flat.even_path, path.face, path.uv, count)
     with pytest.raises(ls.LocationError, match="row 1"):
         flat.fit_path([0, 99], [[0, 0], [0, 0]], 1)
     with pytest.raises(ls.LocationError, match="row 0"):

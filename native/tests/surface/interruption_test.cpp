@@ -7,7 +7,10 @@
 #include <functional>
 
 #include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/flow/curve_directions.h"
+#include "limitsurf/geodesic/guide_weights.h"
 #include "limitsurf/interruption_point.h"
+#include "limitsurf/path/path_smoothing.h"
 #include "limitsurf/search/box_tree.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
@@ -131,6 +134,55 @@ TEST(Interruption, IsPossibleBetweenTilesOfPoles) {
   // For each tile one when it is made for the last time, and one for each task of four.
   EXPECT_GE(passesOf([&] { surface.tiles(at, 8, 1); }), 64 + 64 / 4);
   EXPECT_GE(passesOf([&] { surface.stencils(at, true, 1); }), 64 / 8);
+}
+
+/// Short straight curves on a sheet of 30 x 30 squares.
+Polylines shortCurves(int count) {
+  Random random(7);
+  Polylines curves{Points(2 * count, 3), {0}};
+  for (int i = 0; i < count; ++i) {
+    const double x = random.uniform(1, 29), y = random.uniform(1, 29);
+    curves.points.row(2 * i) << x, y, 0;
+    curves.points.row(2 * i + 1) << x + 0.1, y, 0;
+    curves.offsets.push_back(2 * i + 2);
+  }
+  return curves;
+}
+
+TEST(Interruption, IsPossibleBetweenCurves) {
+  constexpr int kCurves = 5000;
+  const LimitSurface surface = limitSurface(fullGrid(30, 30));
+  const std::vector<Location> at = {{0, 0.5, 0.5}};
+  GuideOptions options;
+  options.cut_curves = shortCurves(kCurves);
+  EXPECT_GE(passesOf([&] { guideWeights(surface, at, at, options); }), 2 * kCurves);
+  const long few = passesOf([&] { curveDirections(surface, shortCurves(1), at); });
+  const long many = passesOf([&] { curveDirections(surface, shortCurves(kCurves), at); });
+  EXPECT_GE(many - few, 2 * kCurves / 256);
+}
+
+TEST(Interruption, IsPossibleBetweenEdges) {
+  const Cage cage = fullGrid(100, 100);
+  const LimitSurface surface = limitSurface(cage);
+  const std::vector<Location> at = {{0, 0.5, 0.5}};
+  GuideOptions options;
+  const long without = passesOf([&] { guideWeights(surface, at, at, options); });
+  for (const std::vector<int>& face : cage.faces) {
+    options.cuts.emplace_back(face[0], face[1]);
+  }
+  // The edges are sorted, which compares each with a dozen others at least.
+  EXPECT_GE(passesOf([&] { guideWeights(surface, at, at, options); }) - without,
+            static_cast<long>(12 * options.cuts.size() / 256));
+}
+
+TEST(Interruption, IsPossibleBetweenPointsOfAPath) {
+  const LimitSurface surface = limitSurface(fullGrid(3, 3));
+  const SurfaceSearch search(surface);
+  const std::vector<Location> path = {{0, 0.5, 0.5}, {8, 0.5, 0.5}};
+  const auto passes = [&](int count) {
+    return passesOf([&] { evenPath(surface, search, path, count, 1); });
+  };
+  EXPECT_GE(passes(200'000) - passes(2), 2 * 200'000 / 256);
 }
 
 TEST(Interruption, IsPossibleWithinAStrand) {

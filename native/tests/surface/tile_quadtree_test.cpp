@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -99,6 +100,25 @@ TEST(TileQuadtree, RefusesDepthsOutOfRange) {
   const LimitSurface surface = limitSurface(grid(2, 2));
   EXPECT_THROW(tileQuadtree(surface, 0), std::invalid_argument);
   EXPECT_THROW(tileQuadtree(surface, SurfaceTiles::kLargestDepth + 1), std::invalid_argument);
+}
+
+TEST(TileQuadtree, RefusesMoreWeightsThanThereIsRoomFor) {
+  const LimitSurface surface = limitSurface(ngon(600, 1));
+  bool any_part_of_the_tiles = false;
+  EXPECT_THROW(
+      tileQuadtree(surface, 24, 1, [&](double part) { any_part_of_the_tiles |= part > 0.5; }),
+      std::invalid_argument);
+  EXPECT_FALSE(any_part_of_the_tiles) << "it is known before the tiles are made";
+}
+
+TEST(TileQuadtree, TellsProgressWhileTilesAreMade) {
+  const LimitSurface surface = limitSurface(ngon(80, 1));
+  std::vector<double> parts;
+  tileQuadtree(surface, 16, 1, [&](double part) { parts.push_back(part); });
+  EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
+  EXPECT_TRUE(
+      std::any_of(parts.begin(), parts.end(), [](double part) { return part > 0.5 && part < 1; }));
+  EXPECT_EQ(parts.back(), 1);
 }
 
 }  // namespace

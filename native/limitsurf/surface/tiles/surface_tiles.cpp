@@ -88,6 +88,33 @@ std::vector<TilePart> differentParts(const std::vector<Place>& places) {
   return parts;
 }
 
+[[noreturn]] void refuseWeights() {
+  throw std::invalid_argument("the points of the tiles would have more than " +
+                              std::to_string(SurfaceTiles::kMostWeights) +
+                              " weights: each point near a vertex of many faces, or near the "
+                              "middle of a face of many sides, "
+                              "depends on all vertices around it. Take a smaller max_depth");
+}
+
+/// Refuses tiles that will surely have too many weights, before they are made.
+void checkWeights(const std::vector<TilePart>& parts, const TileTable& table) {
+  // Neighbouring tiles share most of their points: of the 17 rows of a tile 6.2 to 7.1 are its own
+  // where all tiles around a vertex are taken, and more where some of them are.
+  constexpr std::size_t kLeastRowsOfTile = 6;
+  std::size_t weights = 0;
+  InterruptionStride stride;
+  for (const TilePart& part : parts) {
+    stride.step();
+    if (part.tile.kind == TileRef::kRing) {
+      weights +=
+          kLeastRowsOfTile * table.rings[table.ring_tiles[part.tile.index].ring].points.size();
+    }
+  }
+  if (weights > SurfaceTiles::kMostWeights) {
+    refuseWeights();
+  }
+}
+
 /// The number of the part with this key, which is one of them.
 int tileOf(const std::vector<TilePart>& parts, std::uint64_t key) {
   const auto found =
@@ -108,6 +135,9 @@ void addTiles(const ControlPoints* controls, std::size_t count, PointNumbers& nu
     out.tile_anchor.push_back(numbers.numberOf(controls[i].anchor));
     out.tile_base.push_back(controls[i].relative ? numbers.withoutWeights()
                                                  : out.tile_anchor.back());
+    if (out.points_weights.size() > SurfaceTiles::kMostWeights) {
+      refuseWeights();
+    }
   }
 }
 
@@ -151,11 +181,13 @@ TilePlaces LimitSurface::tilePlaces(const LocationBatch& at, int max_depth, int 
   return out;
 }
 
-SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int threads) const {
+SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int threads,
+                                 const Progress& progress) const {
   data_->check(at, threads);
   const TileTable& table = data_->table;
   const std::vector<Place> places = foundPlaces(at, table, data_->pose, max_depth, threads);
   const std::vector<TilePart> parts = differentParts(places);
+  checkWeights(parts, table);
   SurfaceTiles out;
   PointNumbers numbers(table.points, out);
   const TileBuilder build(table);
@@ -169,6 +201,7 @@ SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int thr
       }
     });
     addTiles(controls.data(), count, numbers, out);
+    report(progress, first + count, parts.size());
   }
 
   putPlaces(places, out, threads);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -56,6 +57,9 @@ struct SurfaceTiles : TilePlaces {
   /// apart that are 2^-24 of an edge from each other.
   static constexpr int kDefaultDepth = 24;
   static constexpr int kLargestDepth = 256;
+  /// The refined points have at most so many weights, which take 3 GiB. All tiles around a vertex
+  /// of N faces have 900 N^2 to 2100 N^2 at the default depth.
+  static constexpr std::size_t kMostWeights = std::size_t{1} << 28;
 };
 
 /// Bounds on what a tile gives when it is evaluated in double precision as written above. Measured,

@@ -103,7 +103,8 @@ TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth, int thread
     cells = std::move(next);
   }
 
-  out.tiles = surface.tiles(covered, max_depth, threads);
+  out.tiles =
+      surface.tiles(covered, max_depth, threads, [&](double part) { tell((1 + part) / 2); });
   tell(1);
   out.origin.setZero(static_cast<Eigen::Index>(out.tiles.tile_points.size()), 2);
   for (std::size_t i = 0; i < covered.size(); ++i) {
