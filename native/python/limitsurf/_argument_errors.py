@@ -58,7 +58,7 @@ def explanation(text: str, positional: Sequence[object], named: Mapping[str, obj
         allowed = RANGES.get((function, name), BITS_32)
         expected = name in parameters and _complaint(parameters[name].kind, allowed, value)
         if expected:
-            return f"{name} is {reprlib.repr(value)}; expected {expected}"
+            return f"{name} is {_text(value)}; expected {expected}"
     if len(positional) > places:
         uncounted = "self" in parameters
         return (
@@ -74,6 +74,12 @@ def explanation(text: str, positional: Sequence[object], named: Mapping[str, obj
         if name not in given and not parameter.may_be_left_out:
             return f"{function}() lacks the argument {name}"
     return None
+
+
+def _text(value: object) -> str:
+    """A value in a short line."""
+    lines = (line.strip() for line in reprlib.repr(value).splitlines())
+    return " ".join(line for line in lines if line)
 
 
 def _parameters(signature: str) -> tuple[dict[str, Parameter], int]:
@@ -124,12 +130,17 @@ def _complaint(kind: str, allowed: tuple[int, int], value: object) -> str | None
 
 
 def _complaint_of_real(value: object) -> str | None:
-    if not (_has(value, "__float__") or _has(value, "__index__")):
-        return "a number"
     if isinstance(value, np.ma.MaskedArray):
         return "a number, not a masked array"
-    if isinstance(value, np.ndarray) and value.ndim > 0:
+    if not (_has(value, "__float__") or _has(value, "__index__")) or _is_bool(value):
         return "a number"
+    if isinstance(value, np.ndarray | np.generic):
+        if value.ndim == 0 and value.dtype.kind == "O":
+            inside = value.item()
+            return "a number" if isinstance(inside, np.ndarray) else _complaint_of_real(inside)
+        # float() drops imaginary parts and reads texts.
+        if value.ndim > 0 or value.dtype.kind not in "fiu":
+            return "a number"
     try:
         float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):

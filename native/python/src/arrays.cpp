@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "elements.h"
 #include "limitsurf/error.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
@@ -14,25 +15,17 @@
 namespace limitsurf::python {
 namespace {
 
-void refuseMasked(const py::handle& object, const char* name) {
-  bool masked = isMasked(object);
-  if (!masked && (PyList_Check(object.ptr()) || PyTuple_Check(object.ptr()))) {
-    PyTypeObject* last = nullptr;  // most lists have elements of one type
-    for (const py::handle element : py::reinterpret_borrow<py::sequence>(object)) {
-      masked = masked || (Py_TYPE(element.ptr()) != last && isMasked(element));
-      last = Py_TYPE(element.ptr());
-    }
-  }
-  if (masked) {
-    throw py::type_error(std::string(name) +
-                         " is a masked array; give its values, as from filled() or compressed()");
-  }
-}
-
-py::array viewed(const py::handle& object, const char* name) {
-  refuseMasked(object, name);
+/// The array that numpy makes of an object, or its TypeError or ValueError.
+py::array viewed(const py::handle& object, const char* name, Booleans booleans,
+                 const char* expected) {
   try {
-    return py::cast<py::array>(py::module_::import("numpy").attr("asarray")(object));
+    refuseLostElements(object, name, booleans, expected);
+    const py::module_ numpy = py::module_::import("numpy");
+    const py::object array = numpy.attr("asanyarray")(object);
+    if (isMasked(array)) {  // by the object's __array__()
+      refuseLostElements(array, name, booleans, expected);
+    }
+    return py::cast<py::array>(numpy.attr("asarray")(array));
   } catch (py::error_already_set& error) {  // rows of different lengths
     if (!error.matches(PyExc_ValueError)) {
       throw;
@@ -62,6 +55,7 @@ std::pair<Number, Number> twoOf(const py::object& object, const char* name, cons
       py::len(object) != 2) {
     throw_error();
   }
+  refuseLostElements(object, name, Booleans::allowed, expected);  // the caster refuses these
   py::detail::make_caster<std::pair<Number, Number>> numbers;
   if (!numbers.load(object, true)) {
     throw_error();
@@ -75,34 +69,6 @@ std::string dtypeText(const py::array& array) {
 
 }  // namespace
 
-std::string shortened(std::string text) {
-  constexpr std::size_t kMost = 80;
-  std::size_t end = kMost;
-  if (text.size() <= end) {
-    return text;
-  }
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
-    --end;  // within a character of several bytes
-  }
-  return text.substr(0, end) + "...";
-}
-
-std::string valueText(const py::handle& value) {
-  if (PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr()) &&
-      py::cast<int>(value.attr("bit_length")()) > 200) {
-    return "an integer of " + py::cast<std::string>(py::str(value.attr("bit_length")())) + " bits";
-  }
-  try {
-    const py::object text = py::repr(value).attr("encode")("utf-8", "backslashreplace");
-    return shortened(py::cast<std::string>(text));
-  } catch (py::error_already_set& error) {
-    if (!error.matches(PyExc_Exception)) {
-      throw;
-    }
-    return "an object of the class " + shortened(Py_TYPE(value.ptr())->tp_name);
-  }
-}
-
 std::string shapeText(const py::array& array) {
   return py::cast<std::string>(py::str(py::tuple(array.attr("shape"))));
 }
@@ -111,7 +77,7 @@ Integers integers(const py::handle& object, const char* name, RaiseText raise) {
   if (isPlain<std::int64_t>(object)) {
     return py::reinterpret_borrow<Integers>(object);
   }
-  py::array array = viewed(object, name);
+  py::array array = viewed(object, name, Booleans::refused, "integers");
   if (array.dtype().kind() == 'f' && array.size() > 0 && !py::isinstance<py::array>(object)) {
     // Floats, or integers of which some need more than 63 bits.
     array = py::module_::import("numpy").attr("asarray")(object, "object");
@@ -124,12 +90,13 @@ Integers integers(const py::handle& object, const char* name, RaiseText raise) {
     Integers result(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
     std::int64_t* to = result.mutable_data();
     for (const py::handle value : array.attr("ravel")().attr("tolist")()) {
-      if (!PyLong_Check(value.ptr()) || PyBool_Check(value.ptr())) {
+      const py::object number = integerOf(value);
+      if (!number) {
         throw py::type_error(elementText(array, name, to - result.data()) + " is " +
                              valueText(value) + "; expected integers");
       }
       int overflow = 0;
-      *to++ = PyLong_AsLongLongAndOverflow(value.ptr(), &overflow);
+      *to++ = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
       if (overflow != 0) {
         beyond(value, to - 1 - result.data());
       }
@@ -150,13 +117,21 @@ Integers integers(const py::handle& object, const char* name, RaiseText raise) {
   return py::cast<Integers>(array.attr("astype")("int64", py::arg("copy") = false));
 }
 
+py::object maskAsNumbers(const py::object& object) {
+  if (!py::isinstance<py::array>(object) || isMasked(object) ||
+      py::reinterpret_borrow<py::array>(object).dtype().kind() != 'b') {
+    return object;
+  }
+  return object.attr("astype")("float32");
+}
+
 Doubles doubles(const py::handle& object, const char* name) {
   if (isPlain<double>(object)) {
     return py::reinterpret_borrow<Doubles>(object);
   }
-  const py::array array = viewed(object, name);
+  const py::array array = viewed(object, name, Booleans::refused, "real numbers");
   const char kind = array.dtype().kind();
-  if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b' && kind != 'O') {
+  if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'O') {
     throw py::type_error(std::string(name) + " has dtype " + dtypeText(array) +
                          "; expected real numbers");
   }
@@ -164,12 +139,12 @@ Doubles doubles(const py::handle& object, const char* name) {
     Doubles result(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
     double* to = result.mutable_data();
     for (const py::handle value : array.attr("ravel")().attr("tolist")()) {
-      *to++ = PyFloat_AsDouble(value.ptr());
-      if (PyErr_Occurred() != nullptr) {
-        PyErr_Clear();
-        throw py::type_error(elementText(array, name, to - 1 - result.data()) + " is " +
+      const py::object number = realOf(value);
+      if (!number) {
+        throw py::type_error(elementText(array, name, to - result.data()) + " is " +
                              valueText(value) + "; expected real numbers");
       }
+      *to++ = PyFloat_AS_DOUBLE(number.ptr());
     }
     return result;
   }
@@ -177,7 +152,7 @@ Doubles doubles(const py::handle& object, const char* name) {
 }
 
 Floats floats(const py::object& object, const char* name) {
-  const py::array array = viewed(object, name);
+  const py::array array = viewed(object, name, Booleans::refused, "real numbers");
   if (array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4) {
     return py::cast<Floats>(array.attr("astype")("float32", py::arg("copy") = false));
   }
@@ -216,7 +191,7 @@ std::pair<int, int> twoIntegers(const py::object& object, const char* name) {
 }
 
 py::array_t<bool> booleans(const py::handle& object, const char* name) {
-  const py::array array = viewed(object, name);
+  const py::array array = viewed(object, name, Booleans::allowed, "booleans");
   if (array.dtype().kind() != 'b' && array.size() > 0) {
     throw py::type_error(std::string(name) + " has dtype " + dtypeText(array) +
                          "; expected booleans");
@@ -267,7 +242,7 @@ Floats resultArray(const py::object& out, const std::string& name,
   if (out.is_none()) {
     return newArray(py::dtype::of<float>(), shape);
   }
-  refuseMasked(out, name.c_str());
+  refuseLostElements(out, name.c_str(), Booleans::allowed, "an array of float32");
   if (!py::isinstance<Floats>(out)) {
     throw py::type_error(name + " is no contiguous array of float32");
   }

@@ -13,6 +13,7 @@
 #include "locks/gil.h"
 #include "locks/signals.h"
 #include "numbers.h"
+#include "value_text.h"
 
 namespace limitsurf::python {
 
@@ -44,16 +45,10 @@ std::string shapeText(const py::array& array);
 /// Throws an error with this message.
 using RaiseText = void (*)(const std::string&);
 
-/// Text for a message: a long one ends in dots.
-std::string shortened(std::string text);
-
-/// A value for a message, as Python writes it, or its class if that raises. Integers of thousands
-/// of digits cannot be written.
-std::string valueText(const py::handle& value);
-
 /// An array of anything that numpy can view as integers; [] is an empty one. Masked arrays are
-/// refused, here and below: nothing would become of the mask. Throws TypeError for floats, booleans
-/// and all else, and calls `raise` for integers beyond 64 bits.
+/// refused, here and below, and so are booleans among numbers, also within lists: elements.h says
+/// how. Throws TypeError for floats, booleans and all else, and calls `raise` for integers beyond
+/// 64 bits.
 Integers integers(const py::handle& object, const char* name, RaiseText raise);
 
 /// The same; throws Error for integers beyond 64 bits.
@@ -61,6 +56,9 @@ template <typename Error>
 Integers integers(const py::handle& object, const char* name) {
   return integers(object, name, [](const std::string& text) { throw Error(text); });
 }
+
+/// An array of booleans as one of 0 and 1, where numbers may be a mask; anything else as it is.
+py::object maskAsNumbers(const py::object& object);
 
 /// An array of anything that numpy can convert to float64. Throws TypeError for all but real
 /// numbers.

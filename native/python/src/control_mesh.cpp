@@ -7,6 +7,7 @@
 #include "bound_class.h"
 #include "choices.h"
 #include "docstrings.h"
+#include "elements.h"
 #include "locks/signals.h"
 
 namespace limitsurf::python {
@@ -103,12 +104,6 @@ std::shared_ptr<BoundMesh> makeMesh(const py::object& positions, const py::objec
   return std::shared_ptr<BoundMesh>(new BoundMesh(points, size_vector, vertex_vector, options));
 }
 
-/// Whether numpy reads an object as an array without looking at its elements.
-bool isArray(const py::object& object) {
-  return PyObject_CheckBuffer(object.ptr()) != 0 || py::hasattr(object, "__array__") ||
-         py::hasattr(object, "__array_interface__");
-}
-
 /// Appends the elements of a list or a tuple of Python's own integers below 2^63, the commonest
 /// face. Of anything else it appends nothing and returns false.
 bool appendIntegers(const py::handle& object, std::vector<std::int64_t>& numbers) {
@@ -133,7 +128,7 @@ bool appendIntegers(const py::handle& object, std::vector<std::int64_t>& numbers
 /// The face sizes and face vertices of an (F, k) array or of a sequence of sequences.
 std::pair<py::object, py::object> flattened(const py::object& faces) {
   const py::module_ numpy = py::module_::import("numpy");
-  if (isArray(faces)) {
+  if (isReadAsArray(faces)) {
     const Integers array = integers<MeshError>(faces, "faces");
     if (array.ndim() != 2) {
       throw MeshError("faces has shape " + shapeText(array) + "; expected (F, k)");

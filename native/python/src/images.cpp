@@ -38,7 +38,7 @@ const Choices<BlendMode> kBlendModes = {
 std::unique_ptr<FilteredImage> makeImage(const py::object& pixels, const std::string& extension,
                                          Flag premultiplied, int threads) {
   const Extension beyond = choice(extension, "extension", kExtensions);
-  const Floats array = floatsInRange(pixels, "pixels");
+  const Floats array = floatsInRange(maskAsNumbers(pixels), "pixels");
   constexpr py::ssize_t kLargestSide = py::ssize_t{1} << 20;
   if (array.ndim() != 3 || array.size() == 0 || array.shape(2) > 4 ||
       std::max(array.shape(0), array.shape(1)) > kLargestSide) {
@@ -121,7 +121,7 @@ py::object blendOver(const py::object& below, const py::object& above, const py:
                      const std::string& mode, Flag premultiplied) {
   const BlendMode blend = choice(mode, "mode", kBlendModes);
   const Colours lower = pixelRows(below, "below"), upper = pixelRows(above, "above");
-  const Doubles weights = doubles(weight, "weight");
+  const Doubles weights = doubles(maskAsNumbers(weight), "weight");
   requireVector<std::invalid_argument>(weights, "weight");
   const Eigen::Map<const Eigen::VectorXd> part(weights.data(), weights.size());
   return rowArray(

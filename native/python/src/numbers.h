@@ -22,9 +22,13 @@ bool isBool(const pybind11::handle& object);
 /// thrown.
 pybind11::object integerOf(const pybind11::handle& object);
 
-/// What an object that is a number gives as a float (its __float__()); a null object for all else,
-/// for booleans, masked arrays and arrays with dimensions. Errors other than those of the type or
-/// the size are thrown.
+/// Whether an object is a scalar of numpy, as np.float32(1) and np.str_('a') are.
+bool isNumpyScalar(const pybind11::handle& object);
+
+/// What an object that is a real number gives as a float (its __float__()); a null object for all
+/// else: for booleans, masked arrays, arrays with dimensions, and numpy's complex numbers, texts
+/// and times, of which numpy would give a float. Errors other than those of the type or the size
+/// are thrown.
 pybind11::object realOf(const pybind11::handle& object);
 
 /// pybind11 would call __int__() where there is no __index__(), which cuts off fractions, and would

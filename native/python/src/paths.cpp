@@ -206,7 +206,7 @@ py::object smoothPath(const SharedSurface& shared, const py::object& face, const
                       const py::object& weights, int iterations, Flag closed, int threads) {
   checkThreads(threads);
   const Locations path = locationsOf(shared.surface().faceCount(), face, uv);
-  const Eigen::VectorXd each = numbers(weights, "weights");
+  const Eigen::VectorXd each = numbers(maskAsNumbers(weights), "weights");
   return locations(
       onSurface(shared, threads, [&](const LimitSurface& surface, const SurfaceSearch& search) {
         return limitsurf::smoothPath(surface, search, path, each, iterations, closed, threads);

@@ -89,7 +89,7 @@ py::array_t<double> mapCoordinates(const PtexLayout& layout, const py::object& f
 
 py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int threads) {
   checkThreads(threads);
-  const Floats values = floats(pixels, "pixels");
+  const Floats values = floats(maskAsNumbers(pixels), "pixels");
   if (values.ndim() != 3 || values.size() == 0) {
     throw std::invalid_argument("pixels has shape " + shapeText(values) +
                                 "; expected (h, w, c), none of them 0");

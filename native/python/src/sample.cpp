@@ -30,7 +30,7 @@ void writeWeights(const py::object& function, Span<Location> at, double* weights
     uvs[2 * i] = at[i].u;
     uvs[2 * i + 1] = at[i].v;
   }
-  const Doubles values = doubles(function(face, uv), "density's result");
+  const Doubles values = doubles(maskAsNumbers(function(face, uv)), "density's result");
   if (values.ndim() != 1 || values.shape(0) != rows) {
     throw std::invalid_argument("density returned shape " + shapeText(values) + " for " +
                                 std::to_string(rows) + " locations; expected (" +
@@ -74,7 +74,7 @@ class DensityArgument {
     if (density.is_none()) {
       return;
     }
-    const Doubles array = doubles(density, "density");
+    const Doubles array = doubles(maskAsNumbers(density), "density");
     requireVector<std::invalid_argument>(array, "density");
     weights_ = Eigen::Map<const Eigen::VectorXd>(array.data(), array.shape(0));
   }
