@@ -22,11 +22,12 @@ void checkShare(double value, const char* name) {
   }
 }
 
-void checkNumber(double on_curves, int rows) {
-  const double count = on_curves * rows;
-  if (count > static_cast<double>(kMostLocations)) {
-    throw std::invalid_argument(
-        text("there would be ", count, " locations; the limit is ", kMostLocations));
+/// Throws if there would be too many locations. `what` says what asks for `on_curves` of them, in
+/// one row.
+void checkNumber(double on_curves, int rows, const std::string& what) {
+  if (on_curves * rows > static_cast<double>(kMostLocations)) {
+    throw std::invalid_argument(text(what, rows > 1 ? text(" and rows is ", rows) : "",
+                                     "; the limit is ", kMostLocations, " locations"));
   }
 }
 
@@ -87,7 +88,8 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
   }
   const double total = std::accumulate(lengths.begin(), lengths.end(), 0.);
   if (options.count) {
-    checkNumber(static_cast<double>(*options.count), options.rows);
+    checkNumber(static_cast<double>(*options.count), options.rows,
+                text("count is ", *options.count));
     if (*options.count == 0) {
       return std::vector<std::int64_t>(lengths.size(), 0);
     }
@@ -98,7 +100,8 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
     return shares(*options.count, lengths, total);
   }
   const double spacing = options.spacing.value_or(total);
-  checkNumber(total / spacing, options.rows);
+  checkNumber(total / spacing, options.rows,
+              text("spacing is ", spacing, " on curves of the length ", total));
   std::vector<std::int64_t> result;
   result.reserve(lengths.size());
   for (const double length : lengths) {

@@ -20,10 +20,10 @@ void checkSizes(const std::vector<std::int64_t>& sizes, std::size_t index_count)
   std::size_t sum = 0;
   for (std::size_t f = 0; f < sizes.size(); ++f) {
     if (sizes[f] < 3) {
-      refuse("face ", f, " has ", sizes[f], " vertices; a face needs at least 3");
+      refuse("face_sizes: face ", f, " has ", sizes[f], " vertices; a face needs at least 3");
     }
     if (sizes[f] > kMaxValence) {
-      refuse("face ", f, " has ", sizes[f], " vertices; the limit is ", kMaxValence);
+      refuse("face_sizes: face ", f, " has ", sizes[f], " vertices; the limit is ", kMaxValence);
     }
     sum += static_cast<std::size_t>(sizes[f]);
   }
@@ -240,12 +240,12 @@ struct Ranges {
 void checkEach(const Points& positions) {
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (!positions.row(v).allFinite()) {
-      refuse("vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1), ", ",
-             positions(v, 2), "); positions must be finite");
+      refuse("positions: vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1),
+             ", ", positions(v, 2), "); positions must be finite");
     }
     if (positions.row(v).cwiseAbs().maxCoeff() > kLargestCoordinate) {
-      refuse("vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1), ", ",
-             positions(v, 2), "); coordinates may be at most ", kLargestCoordinate);
+      refuse("positions: vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1),
+             ", ", positions(v, 2), "); coordinates may be at most ", kLargestCoordinate);
     }
   }
 }
@@ -273,8 +273,8 @@ void checkPositions(const Points& positions, int vertex_count, int threads) {
   }
   const double extent = (all.high - all.low).maxCoeff();  // negative if there are no positions
   if (extent > 0 && extent < kLeastExtent) {
-    refuse("the mesh measures ", extent, " along its longest axis; it must measure at least ",
-           kLeastExtent, ", or 0");
+    refuse("positions: the mesh measures ", extent,
+           " along its longest axis; it must measure at least ", kLeastExtent, ", or 0");
   }
 }
 
@@ -301,8 +301,8 @@ ControlMesh::ControlMesh(Points positions, const std::vector<std::int64_t>& face
     stride.step();
     for (int i = face_offsets_[f]; i < face_offsets_[f + 1]; ++i) {
       if (face_vertices[i] < 0 || face_vertices[i] >= positions_.rows()) {
-        refuse("face ", f, " names vertex ", face_vertices[i], "; the mesh has ", positions_.rows(),
-               " vertices");
+        refuse("face_vertices: face ", f, " names vertex ", face_vertices[i],
+               ", but positions has ", positions_.rows(), " rows");
       }
       face_vertices_.push_back(static_cast<int>(face_vertices[i]));
     }

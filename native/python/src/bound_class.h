@@ -5,6 +5,7 @@
 #include <typeinfo>
 
 #include "numbers.h"
+#include "value_text.h"
 
 namespace limitsurf::python {
 
@@ -17,6 +18,15 @@ inline pybind11::tuple reduced(const pybind11::object& self) {
   }
   return pybind11::make_tuple(pybind11::module_::import("copyreg").attr("__newobj__"),
                               pybind11::make_tuple(type), self.attr("__getstate__")());
+}
+
+/// What a __setstate__() is given. Throws TypeError unless it is a tuple.
+inline pybind11::tuple stateTuple(const pybind11::object& given, const char* class_name) {
+  if (!pybind11::isinstance<pybind11::tuple>(given)) {
+    throw pybind11::type_error(std::string("no state of a ") + class_name + ": " +
+                               valueText(given) + " is no tuple");
+  }
+  return pybind11::reinterpret_borrow<pybind11::tuple>(given);
 }
 
 /// A new class of the module, a py::class_. Python can make an object without initialising it

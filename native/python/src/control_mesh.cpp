@@ -156,6 +156,17 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
   return {arrayOf(sizes), arrayOf(vertices)};
 }
 
+/// The message of an error about the arguments face_sizes or face_vertices, of which from_faces()
+/// has made its one argument `faces`.
+std::string namingFaces(const std::string& message) {
+  for (const std::string begin : {"face_sizes: ", "face_vertices: "}) {
+    if (message.compare(0, begin.size(), begin) == 0) {
+      return "faces: " + message.substr(begin.size());
+    }
+  }
+  return message;
+}
+
 py::object edgeSharpness(const ControlMesh& mesh) {
   const EdgeSharpness& sharpness = mesh.options().edge_sharpness;
   py::array_t<std::int64_t> edges(
@@ -203,9 +214,13 @@ void bindConstructors(MeshClass& type) {
              const std::string& creasing, const std::string& triangles, const std::string& scheme,
              const py::object& holes) {
             const auto [sizes, vertices] = flattened(faces);
-            return makeMesh(positions, sizes, vertices,
-                            meshOptions(edge_sharpness, vertex_sharpness, boundary, creasing,
-                                        triangles, scheme, holes));
+            const MeshOptions options = meshOptions(edge_sharpness, vertex_sharpness, boundary,
+                                                    creasing, triangles, scheme, holes);
+            try {
+              return makeMesh(positions, sizes, vertices, options);
+            } catch (const MeshError& error) {
+              throw MeshError(namingFaces(error.what()));
+            }
           },
           "positions"_a, "faces"_a, "edge_sharpness"_a = py::none(),
           "vertex_sharpness"_a = py::none(), "boundary"_a = "smooth", "creasing"_a = "uniform",
@@ -259,7 +274,8 @@ std::string ruleOfState(const py::handle& part) {
   }
 }
 
-std::shared_ptr<BoundMesh> meshOfState(const py::tuple& s) {
+std::shared_ptr<BoundMesh> meshOfState(const py::object& given) {
+  const py::tuple s = stateTuple(given, "ControlMesh");
   if (s.size() != 10) {
     throw py::value_error("no state of a ControlMesh: it has " + std::to_string(s.size()) +
                           " parts instead of 10");
@@ -283,7 +299,8 @@ void bindControlMesh(py::module_& module) {
   bindArrays(type);
   bindOptions(type);
   type.def("__repr__", &description)
-      .def(py::pickle([](const BoundMesh& mesh) { return state(mesh); }, &meshOfState));
+      .def(py::pickle([](const BoundMesh& mesh) -> py::object { return state(mesh); },
+                      &meshOfState));
 }
 
 }  // namespace limitsurf::python

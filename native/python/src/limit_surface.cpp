@@ -66,13 +66,14 @@ std::string representation(const SharedSurface& shared) {
          std::to_string(shared.surface().refused().size()) + " faces refused)";
 }
 
-py::tuple pickled(const SharedSurface& shared) {
+py::object pickled(const SharedSurface& shared) {
   return py::make_tuple(py::cast(shared.mesh), pointArray(currentPositions(shared)));
 }
 
-std::shared_ptr<SharedSurface> unpickled(const py::tuple& state) {
+std::shared_ptr<SharedSurface> unpickled(const py::object& given) {
+  const py::tuple state = stateTuple(given, "LimitSurface");
   if (state.size() != 2 || !py::isinstance<BoundMesh>(state[0])) {
-    throw py::value_error("no state of a LimitSurface");
+    throw py::value_error("no state of a LimitSurface: it is no pair of a mesh and positions");
   }
   auto shared = makeSurface(py::cast<BoundMesh&>(state[0]).shared_from_this());
   setPositions(*shared, state[1], 0);

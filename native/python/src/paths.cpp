@@ -118,6 +118,11 @@ SpaceCurves spaceCurves(const py::object& points, const py::object& left, const 
   if (!left.is_none()) {
     curves.before = rowsOfThree(left, "handle_left");
     curves.after = rowsOfThree(right, "handle_right");
+    if (curves.before.rows() == 0 && curves.after.rows() == 0 && curves.points.rows() > 0) {
+      // For the library such curves have no handles.
+      throw std::invalid_argument("handle_left has 0 rows, but points has " +
+                                  std::to_string(curves.points.rows()));
+    }
   }
   if (offsets.is_none()) {
     curves.offsets.push_back(0);

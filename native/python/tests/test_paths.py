@@ -353,7 +353,7 @@ def test_errors_name_what_is_wrong(flat):
     assert "max_step is 0" in refusal(flat.lay_path, line, 1, max_step=0)
     assert "row 1: points is (nan" in refusal(flat.lay_path, [[0, 0, 0], [np.nan, 0, 0]], 1)
     assert "together" in refusal(flat.lay_path, line, 1, handle_left=line)
-    assert "handle_right has 1 rows; expected 2" in refusal(
+    assert "handle_right has 1 rows, but points has 2" in refusal(
         flat.lay_path, line, 1, handle_left=line, handle_right=line[:1]
     )
     assert "offsets[2] is 1" in refusal(flat.lay_path, line, 1, offsets=[0, 1, 1, 2])
