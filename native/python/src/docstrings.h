@@ -194,10 +194,10 @@ indices : (sum of the mesh's face_sizes,) array of int
 interpolation : str
     Where the data are linear, by OpenSubdiv's rules FVAR_LINEAR_*:
     'none': nowhere. Seams and boundaries are smooth curves, also around corners of one face, but for
-        vertices that the mesh's own rules pin (boundary='corners', infinitely sharp vertices). Where
-        two rows alternate around a vertex (A, B, A, B), it depends on the order of the faces which
-        corners are pinned, as in OpenSubdiv.
-    'corners_only': at values that have only one face at a vertex: these are interpolated.
+        vertices that the mesh's own rules pin (boundary='corners', infinitely sharp vertices), and for
+        rows that return around a vertex, after other rows: these are interpolated there.
+    'corners_only': at values that have only one face at a vertex: these are interpolated, and so are
+        rows that return around a vertex.
     'corners_plus1': also at junctions of more than two values, and at values across a seam from one
     that a sharp edge pins.
     'corners_plus2': also where a seam ends inside, and at both values of a vertex if one of the two
@@ -208,6 +208,15 @@ threads : int
 
 Sharp edges and vertices are as sharp for the data as for the surface. The data have values on all
 faces that have a limit surface.
+
+By 'none' and 'corners_only' the data near some vertices depend on the order of the faces, as they do in
+OpenSubdiv. It goes around a vertex inside counter-clockwise, from the face with the lowest number, and
+collects the rows. If the second row returns before a third one is met (A, B, A, B), these later faces
+count as a row of their own, which is joined with no other one and not interpolated. So the data depend on
+where OpenSubdiv begins exactly if somewhere around the vertex (beginning anywhere; A, B, A, C, B has B, A,
+B, A) the rows are A, B, A, B, each of them for one face or several in succession. By 'corners_only' this
+matters only if the last of the four has several faces, or if the second has several faces and the row B
+occurs nowhere else around the vertex: rows of one face are interpolated in any case.
 
 Raises
 ------
