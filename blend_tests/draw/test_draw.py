@@ -300,9 +300,9 @@ def test_what_follows_is_changed_only_in_the_pose_of_its_binding(bent):
     there = drawn.evaluated_points(ob)
     assert np.abs(there - at_rest).max() > 0.1
     removed = [{"name": "", "index": 0}]
-    with pytest.raises(RuntimeError, match="another shape or place now than when"):
+    with pytest.raises(RuntimeError, match="another shape now than when the curve was bound"):
         bpy.ops.view3d.limit_draw(removed=removed)
-    with pytest.raises(RuntimeError, match="another shape or place now than when"):
+    with pytest.raises(RuntimeError, match="another shape now than when the curve was bound"):
         draw([NEAR])
     np.testing.assert_array_equal(drawn.evaluated_points(ob), there)
     key.value = 0
@@ -317,6 +317,49 @@ def test_what_follows_is_changed_only_in_the_pose_of_its_binding(bent):
     np.testing.assert_allclose(
         drawn.evaluated_points(ob), there[len(there) - len(drawn.evaluated_points(ob)) :], atol=1e-5
     )
+
+
+def test_a_drawing_in_another_pose_is_changed_after_the_advice_was_followed(bent):
+    _surface, key = bent
+    draw([FAR], radius=0.02)
+    ob = bpy.context.active_object
+    at_rest = drawn.control_points(ob.data.splines[0])
+    key.value = 1
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="Unbind from Limit Surface with the shape At Rest"):
+        draw([NEAR])
+    assert bpy.ops.object.limit_unbind(shape="REST") == {"FINISHED"}
+    np.testing.assert_array_equal(drawn.control_points(ob.data.splines[0]), at_rest)
+    assert draw([NEAR]) == {"FINISHED"}
+    assert bpy.context.active_object == ob
+    assert len(ob.data.splines) == 2
+
+
+CLEARS = (bpy.ops.object.location_clear, bpy.ops.object.rotation_clear, bpy.ops.object.scale_clear)
+
+
+@pytest.mark.parametrize("is_child", [True, False])
+def test_the_place_of_a_drawing_that_was_moved_is_named(target, is_child):
+    draw([ACROSS], radius=0.0, spline="POLY", follow="NODES")
+    ob = bpy.context.active_object
+    if not is_child:
+        bpy.ops.object.parent_clear(type="CLEAR_KEEP_TRANSFORM")
+    shown = scenes.transformed(np.array(ob.matrix_world), drawn.evaluated_points(ob))
+    ob.location.x, ob.rotation_euler.z, ob.scale.y = 1, 0.3, 2
+    bpy.context.view_layer.update()
+    moved = scenes.transformed(np.array(ob.matrix_world), drawn.evaluated_points(ob))
+    np.testing.assert_allclose(moved, shown, atol=1e-5)
+    advice = "clear the object's location" if is_child else "the same location, rotation and scale"
+    with pytest.raises(RuntimeError, match=f"The object {ob.name} was moved.*{advice}"):
+        draw([WITHIN])
+    if is_child:
+        for clear in CLEARS:
+            clear()
+    else:
+        ob.matrix_world = target.matrix_world
+    bpy.context.view_layer.update()
+    assert draw([WITHIN]) == {"FINISHED"}
+    assert len(ob.data.splines) == 2
 
 
 def test_points_follow_their_own_location_where_another_sheet_is_nearer():

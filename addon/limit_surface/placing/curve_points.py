@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from .. import ids
 from ..errors import RefusalError
@@ -100,8 +101,9 @@ def check_any(ob: bpy.types.Object) -> None:
 
 
 def check_pose(ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurface) -> None:
-    """Raises RefusalError if a curve follows the surface and the surface has another shape or place
-    now than when the curve was bound. The curve's own points are then not where it is shown.
+    """Raises RefusalError if a curve follows the surface, and the surface has another shape or
+    place now than when the curve was bound, or the curve's object was moved since. The curve's own
+    points are then not where it is shown.
     """
     table = curve_table(ob)
     if table is None:
@@ -112,15 +114,36 @@ def check_pose(ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurf
             f"{ob.name} is bound to faces that no longer exist: use Rebind to Limit Surface"
         )
     found = Locations(face, attributes.read(table.data, ids.UV))
-    now = Binding.at(posed, found, transform.world_matrix(ob)).root
     bound = attributes.read(table.data, ids.REST_ROOT)
-    size = np.abs(bound).max(initial=0.0)
-    if np.abs(now - bound).max(initial=0.0) > MOVED * size:
+    if _are_same(bound, Binding.at(posed, found, transform.world_matrix(ob)).root):
+        return
+    # What is drawn on a surface shares its transform. If the places at rest are those of now in
+    # the surface's own space, the surface is as it was.
+    if len(bound) and _are_same(bound, Binding.at(posed, found, posed.cage.matrix).root):
         raise RefusalError(
-            f"{ob.name} follows {surface.name}, which has another shape or place now than "
-            "when the curve was bound. To change the curve, go back to that frame or pose, "
-            "or use Unbind from Limit Surface to keep the present shape"
+            f"The object {ob.name} was moved, turned or scaled since its curve was bound to "
+            f"{surface.name}. The curve is still shown on {surface.name}, but its control points "
+            f"are elsewhere. To change the curve, {_way_back(ob, surface)}"
         )
+    raise RefusalError(
+        f"{ob.name} follows {surface.name}, which has another shape now than when the curve was "
+        "bound, or one of the two was moved. To change the curve, go back to that frame, pose or "
+        "place. Or use Unbind from Limit Surface with the shape At Rest: the curve then stops "
+        "following, and goes back to the shape that it had when it was bound"
+    )
+
+
+def _are_same(bound: np.ndarray, now: np.ndarray) -> bool:
+    size = np.abs(bound).max(initial=0.0)
+    return bool(np.abs(now - bound).max(initial=0.0) <= MOVED * size)
+
+
+def _way_back(ob: bpy.types.Object, surface: bpy.types.Object) -> str:
+    """Returns how an object gets the transform of its surface again."""
+    is_child = ob.parent == surface and ob.parent_type == "OBJECT"
+    if is_child and ob.matrix_parent_inverse == Matrix() and not ob.constraints:
+        return "clear the object's location, rotation and scale (Object > Clear)"
+    return f"give the object the same location, rotation and scale as {surface.name} again"
 
 
 def _store(ob: bpy.types.Object, points: np.ndarray, places: Binding) -> None:
