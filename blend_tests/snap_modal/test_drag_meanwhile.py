@@ -112,6 +112,15 @@ def test_the_surface_moves(sheet, pin, change, kind):
     np.testing.assert_allclose(pin.matrix_world.translation, wanted, atol=1e-6)
 
 
+def test_what_was_made_on_a_surface_is_not_dragged_by_its_origin(sheet):
+    scenes.activate(sheet)
+    bpy.ops.object.limit_points_add(distribution="UNIFORM", count=9)
+    sheet.select_set(True)
+    scenes.activate(sheet)
+    with pytest.raises(RefusalError, match="Limit Points cannot be dragged: the object's own"):
+        find_subject(bpy.context)
+
+
 def test_a_surface_that_stays_is_not_read_anew(sheet, pin):
     drag = begin()
     before = drag.glide.surface

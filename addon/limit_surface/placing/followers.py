@@ -87,6 +87,14 @@ def is_placed(ob: bpy.types.Object) -> bool:
     return holder is not None and not lacking(holder, root_attributes(holder))
 
 
+def has_own_places(ob: bpy.types.Object) -> bool:
+    """Tells whether the object's points, and not its origin, have places on a surface: hair,
+    points, decals, limit meshes and drawings, whether they follow or not, and whatever follows.
+    """
+    is_drawing = ob.type == "CURVE" and ids.FACE in ob.data
+    return is_drawing or is_placed(ob) or bool(modifier_of(ob) or live_modifier_of(ob))
+
+
 def modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
     """Returns the modifier by which the object follows a surface, if it does."""
     for modifier in ob.modifiers:

@@ -11,6 +11,7 @@ from typing import NamedTuple, Protocol
 import bpy
 
 from ..errors import RefusalError
+from ..placing.followers import has_own_places
 from .aim import Elements, Placement
 from .bones import SnappedBones
 from .choices import Choices, Outcome
@@ -29,6 +30,9 @@ POINTS: dict[str, Callable[[bpy.types.Object], Snapped]] = {
 }
 HAIR_MODES = ("EDIT_CURVES", "SCULPT_CURVES")
 MODES = ("OBJECT", "EDIT_ARMATURE", *POINTS, *HAIR_MODES)
+#: To move the object by its origin would tear its points off the surface, or would be undone by
+#: what makes them follow.
+OWN_PLACES = "the object's own points are placed on a surface, and its origin is not"
 
 
 class Snapped(Protocol):
@@ -86,6 +90,8 @@ def _objects(
             failures[f"{target.name} is parented to the object and would move with it"] += 1
         elif not (ob.data if ob.type == "CURVES" else ob).is_editable:
             failures["the object is linked from another file"] += 1
+        elif ob.type != "CURVES" and has_own_places(ob):
+            failures[OWN_PLACES] += 1
         elif ob.type != "CURVES":
             movable.append(ob)
         elif ob.data in curves:

@@ -8,10 +8,11 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
+from ..placing.followers import has_own_places
 from ..placing.posed_surface import transformed
 from ..placing.present_shape import PresentShape
 from ..snap.mesh_vertices import as_edited
-from ..snap.selection import ancestors
+from ..snap.selection import OWN_PLACES, ancestors
 from ..snap.surface import TargetSurface
 from ..tasks.editable import check_data_editable
 from ..tasks.object_keys import ObjectKey
@@ -105,6 +106,8 @@ def _object(context: bpy.types.Context, target: bpy.types.Object) -> Subject:
         raise RefusalError(f"{ob.name} is linked from another file")
     if ob in ancestors(target):
         raise RefusalError(f"{ob.name} would move {target.name} with it")
+    if ob.type != "CURVES" and has_own_places(ob):
+        raise RefusalError(f"{ob.name} cannot be dragged: {OWN_PLACES}")
     return Subject("OBJECT", ObjectKey.of(ob), ObjectKey.of(target))
 
 
