@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from bakes import bake, contents, read_back
+from bakes import bake, contents, read_back, saved
 from limit_surface import ids
 from limit_surface.bake_frames import command
 from limit_surface.reading import attributes
@@ -75,7 +75,7 @@ def test_scene_is_left_as_it_was(waves, tmp_path):
     before = scenes.file_contents()
     selected = [ob.name for ob in bpy.context.selected_objects]
     for form in FORMATS:
-        assert bake(tmp_path, "Flat", options=("--format", form)) == 0
+        assert bake(tmp_path / form, "Flat", options=("--format", form)) == 0
     assert scenes.file_contents() == before
     assert [ob.name for ob in bpy.context.selected_objects] == selected
     assert bpy.context.scene.frame_current == 7
@@ -94,19 +94,20 @@ def test_progress_is_one_line_a_frame(waves, tmp_path, capfd):
 
 
 def test_files_that_exist_are_left_as_they_are(waves, tmp_path, capfd):
-    assert bake(tmp_path, "Flat") == 0
-    whole = contents(tmp_path)
-    (tmp_path / "Flat.0002.abc").unlink()
-    (tmp_path / "Flat.0003.abc").write_text("from another run")
+    folder = saved(tmp_path)
+    assert bake(folder, "Flat") == 0
+    whole = contents(folder)
+    (folder / "Flat.0002.abc").unlink()
+    (folder / "Flat.0003.abc").write_text("from another run")
     capfd.readouterr()
-    assert bake(tmp_path, "Flat") == 0
+    assert bake(folder, "Flat") == 0
     assert "frames in" in capfd.readouterr().out
-    found = contents(tmp_path)
+    found = contents(folder)
     assert found["Flat.0003.abc"] == b"from another run"
     assert len(found["Flat.0002.abc"]) > 1000
-    assert bake(tmp_path, "Flat", options=("--overwrite",)) == 0
-    assert len(contents(tmp_path)["Flat.0003.abc"]) > 1000
-    assert contents(tmp_path).keys() == whole.keys()
+    assert bake(folder, "Flat", options=("--overwrite",)) == 0
+    assert len(contents(folder)["Flat.0003.abc"]) > 1000
+    assert contents(folder).keys() == whole.keys()
 
 
 def hide_object(hair):
@@ -257,10 +258,11 @@ def test_names_that_files_cannot_have(waves, tmp_path, capfd):
     """One job after the other must not take the files of the first for its own."""
     hair = bpy.data.objects["Limit Hair"]
     waves.name, hair.name = "a/b", "a:b"
+    folder = saved(tmp_path)
     for name in ("a/b", "a:b"):
-        assert bake(tmp_path, name, options=("--format", "npz")) == 0
+        assert bake(folder, name, options=("--format", "npz")) == 0
         assert "3 written" in capfd.readouterr().out
-    names = contents_of_files(tmp_path)
+    names = contents_of_files(folder)
     assert len(names) == 2 * 3 + 1
     assert all(re.fullmatch(r"a_b_[0-9a-f]{8}\.000[123]\.npz|bake\.json", name) for name in names)
 
@@ -272,15 +274,16 @@ def test_a_folder_that_cannot_be_written(waves, tmp_path, capfd):
 
 
 def test_a_folder_with_another_bake(waves, tmp_path, capfd):
-    assert bake(tmp_path, "Flat", frames="1") == 0
-    record = json.loads((tmp_path / "bake.json").read_text())
-    (tmp_path / "bake.json").write_text(json.dumps(record | {"blender": "3.6.0"}))
-    assert bake(tmp_path, "Flat", frames="2") == command.BAD_ARGUMENTS
+    folder = saved(tmp_path)
+    assert bake(folder, "Flat", frames="1") == 0
+    record = json.loads((folder / "bake.json").read_text())
+    (folder / "bake.json").write_text(json.dumps(record | {"blender": "3.6.0"}))
+    assert bake(folder, "Flat", frames="2") == command.BAD_ARGUMENTS
     reason = f"blender 3.6.0, not {bpy.app.version_string}"
     assert reason in capfd.readouterr().err
-    (tmp_path / "bake.json").write_text("[]")
-    assert bake(tmp_path, "Flat", frames="2") == command.BAD_ARGUMENTS
-    assert "bake.json is not the record of a bake" in capfd.readouterr().err
+    (folder / "bake.json").write_text("[]")
+    assert bake(folder, "Flat", frames="2") == command.BAD_ARGUMENTS
+    assert "bake.json is damaged" in capfd.readouterr().err
 
 
 def test_two_files_of_one_name_do_not_mix(tmp_path, capfd):
@@ -318,13 +321,15 @@ def test_a_mesh_without_vertices_does_not_end_the_job(waves, tmp_path, capfd):
 
 
 def test_a_file_system_without_links(waves, tmp_path, monkeypatch):
+    folder = saved(tmp_path)
+
     def no_links(*_paths):
         raise PermissionError("Operation not permitted")
 
     monkeypatch.setattr(os, "link", no_links)
-    assert bake(tmp_path, "Flat", frames="1") == 0
-    assert bake(tmp_path, "Flat", frames="2") == 0
-    assert contents(tmp_path).keys() == {"Flat.0001.abc", "Flat.0002.abc", "bake.json"}
+    assert bake(folder, "Flat", frames="1") == 0
+    assert bake(folder, "Flat", frames="2") == 0
+    assert contents(folder).keys() == {"Flat.0001.abc", "Flat.0002.abc", "bake.json"}
 
 
 def change_topology(sheet):

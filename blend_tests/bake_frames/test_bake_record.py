@@ -112,3 +112,55 @@ def test_changes_that_are_not_saved(shot, capfd, monkeypatch):
     assert bake(shot, "Cube", options=OVERWRITE) == command.BAD_ARGUMENTS
     assert "save the .blend file first" in capfd.readouterr().err
     assert heights(shot) == [0, 0, 0]
+
+
+def new_cube(height):
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.ops.mesh.primitive_cube_add(location=(0, 0, height))
+
+
+def test_files_that_were_never_saved_do_not_mix(tmp_path, capfd):
+    folder = tmp_path / "caches"
+    new_cube(0)
+    assert bake(folder, "Cube", frames="1-2", options=NPZ) == 0
+    before = contents(folder)
+    new_cube(7)
+    assert bake(folder, "Cube", frames="3-4", options=NPZ) == command.BAD_ARGUMENTS
+    err = capfd.readouterr().err
+    assert f"{folder} holds a bake" in err
+    assert "never saved: save the file first, and give another folder" in err
+    save(tmp_path / "shot.blend", 7)
+    assert bake(folder, "Cube", frames="3-4", options=NPZ) == command.BAD_ARGUMENTS
+    err = capfd.readouterr().err
+    assert "holds another bake (its .blend file had not been saved" in err
+    assert contents(folder) == before
+    assert bake(folder, "Cube", frames="1-4", options=OVERWRITE) == 0
+    assert heights(folder) == [7] * 4
+    new_cube(0)
+    assert bake(folder, "Cube", frames="5", options=NPZ) == command.BAD_ARGUMENTS
+    assert "never saved" in capfd.readouterr().err
+    assert bake(folder, "Cube", frames="1-4", options=OVERWRITE) == 0
+    assert heights(folder) == [0] * 4
+
+
+def test_frames_whose_record_is_damaged_or_gone_are_not_kept(shot, capfd):
+    """The file has changed since the frames were written, which nobody knows without the record."""
+    record = shot / "bake.json"
+    record.write_text("{")
+    assert bake(shot, "Cube", frames="1-4", options=NPZ) == command.BAD_ARGUMENTS
+    err = capfd.readouterr().err
+    assert f"{record} is damaged" in err
+    assert f"the frames in {shot}" in err
+    assert "delete bake.json and the frames" in err
+    record.unlink()
+    assert bake(shot, "Cube", frames="1-4", options=NPZ) == command.BAD_ARGUMENTS
+    assert f"{shot} holds frames but no bake.json" in capfd.readouterr().err
+    assert heights(shot) == [0] * 3
+    assert not record.exists()
+    assert bake(shot, "Cube", frames="1-4", options=OVERWRITE) == 0
+    assert heights(shot) == [7] * 4
+    record.unlink()
+    for path in shot.glob("*.npz"):
+        path.unlink()
+    assert bake(shot, "Cube", options=NPZ) == 0
+    assert heights(shot) == [7] * 3

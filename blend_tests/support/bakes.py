@@ -21,6 +21,12 @@ def bake(folder: Path, *objects: str, frames: str = "1-3", options: tuple[str, .
     return command.main(["bake", f"--frames={frames}", "--objects", *objects, *where, *options])
 
 
+def saved(folder: Path) -> Path:
+    """Saves the open file, so that several jobs can bake it into the folder that is returned."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "shot.blend"))
+    return folder / "caches"
+
+
 def blender_executable(folder: Path) -> Path:
     """Makes a program that takes the arguments of Blender's executable."""
     program = folder / "blender"

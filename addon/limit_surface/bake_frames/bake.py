@@ -20,7 +20,7 @@ from ..tasks import file_names
 from . import bindings, sources
 from .arguments import Arguments
 from .exporters import Subject
-from .frame_files import CONTENTS, LIBRARIES, FrameFiles
+from .frame_files import CONTENTS, FILE, LIBRARIES, FrameFiles
 
 # what has become of a file
 WRITTEN, EXISTED, FAILED = "written", "existed", "failed"
@@ -54,7 +54,7 @@ class Bake:
         self._files.prepare(
             {
                 "blender": bpy.app.version_string,
-                "file": Path(bpy.data.filepath).name,
+                FILE: Path(bpy.data.filepath).name,
                 "limitsurf": native.version(),
                 "scene": self._scene.name,
                 CONTENTS: sources.checksum(),

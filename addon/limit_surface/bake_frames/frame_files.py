@@ -23,7 +23,8 @@ from ..tasks import file_names
 # unfinished files begin so; one that a killed job has left can be deleted
 PARTIAL = ".partial"
 RECORD = "bake.json"
-# the keys of the record for checksums of the .blend file, and of each file that it links
+# the keys of the record for the .blend file's name, its checksum, and those of the files it links
+FILE = "file"
 CONTENTS = "file_sha256"
 LIBRARIES = "libraries_sha256"
 
@@ -42,26 +43,48 @@ class FrameFiles:
 
     def prepare(self, record: Record, replaced: Set[Path]) -> None:
         """Makes the folder and writes the record. Raises RefusalError where the folder holds frames
-        with another record, which must not be mixed with new ones. The contents of the .blend file
-        and of what it links may be others if each frame in the folder is to be `replaced`.
+        with another record, or without one, which must not be mixed with new ones. The .blend file
+        and what it links may have other contents if each frame in the folder is to be `replaced`.
         """
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
+            # in this order: frames of a job that runs beside this one come after its record
+            has_frames = bool(self._frames())
+            has_record = self._record.exists()
+            if has_frames and not has_record:
+                if self._frames() - replaced:
+                    raise RefusalError(
+                        f"{self._folder} holds frames but no {RECORD}, so that nobody knows from "
+                        "which file they come: delete the frames, or give another folder"
+                    )
+                self._replace(record, replaced, True)
+                return
             there = self._claim(record)
             if not isinstance(there, dict):
-                raise RefusalError(f"{self._record} is not the record of a bake: delete it")
+                raise RefusalError(
+                    f"{self._record} is damaged, so that nobody knows from which file the frames "
+                    f"in {self._folder} come: delete {RECORD} and the frames, or give another "
+                    "folder"
+                )
             # records of earlier versions of the extension lack some checksums
             unknown = {key for key in (CONTENTS, LIBRARIES) if key not in there}
             differ = {key for key in record if there.get(key) != record[key]} - unknown
+            is_unnamed = not (record[FILE] and there.get(FILE))
+            if is_unnamed and (has_frames or FILE in differ):
+                # Files that were never saved cannot be told from each other.
+                differ = (differ - {FILE}) | {CONTENTS}
             if replaced and (differ or unknown) and differ <= {CONTENTS, LIBRARIES}:
                 self._replace(record, replaced, bool(differ))
                 return
         except OSError as error:
             raise RefusalError(f"cannot write to {self._folder}: {error.strerror}") from error
-        if differ:
-            reasons = "; ".join(
-                _difference(key, there.get(key), record[key]) for key in sorted(differ)
+        if differ == {CONTENTS} and not record[FILE]:
+            raise RefusalError(
+                f"{self._folder} holds a bake, and nobody can tell whether it is one of the open "
+                "file, which was never saved: save the file first, and give another folder"
             )
+        if differ:
+            reasons = "; ".join(_difference(key, there, record) for key in sorted(differ))
             raise RefusalError(
                 f"{self._folder} holds another bake ({reasons}): give another folder, or delete "
                 "that bake"
@@ -97,11 +120,14 @@ class FrameFiles:
     def _record(self) -> Path:
         return self._folder / RECORD
 
+    def _frames(self) -> set[Path]:
+        return {p for p in self._folder.iterdir() if _FRAME.fullmatch(p.name) and p.is_file()}
+
     def _replace(self, record: Record, replaced: Set[Path], has_changed: bool) -> None:
         """Deletes all frames, and writes the record. So a job that is ended before it has written
         all frames anew leaves none of the old ones.
         """
-        old = {p for p in self._folder.iterdir() if _FRAME.fullmatch(p.name) and p.is_file()}
+        old = self._frames()
         rest = sorted(old - replaced)
         if rest and not has_changed:
             return
@@ -135,13 +161,18 @@ class FrameFiles:
             return None
 
 
-def _difference(key: str, there: object, here: object) -> str:
+def _difference(key: str, there: Record, here: Record) -> str:
+    was, now = there.get(key), here[key]
     if key == CONTENTS:
+        if not here[FILE]:
+            return "the open file was never saved"
+        if not there.get(FILE):
+            return "its .blend file had not been saved: --overwrite replaces all"
         return "the .blend file has changed since, or is another one: --overwrite replaces all"
-    if key == LIBRARIES and isinstance(there, dict) and isinstance(here, dict):
-        names = sorted(n for n in there.keys() | here.keys() if there.get(n) != here.get(n))
+    if key == LIBRARIES and isinstance(was, dict) and isinstance(now, dict):
+        names = sorted(n for n in was.keys() | now.keys() if was.get(n) != now.get(n))
         return f"linked files have changed since: {', '.join(names)}; --overwrite replaces all"
-    return f"{key} {there}, not {here}"
+    return f"{key} {was}, not {now}"
 
 
 def _write(path: Path, record: Record) -> None:
