@@ -233,3 +233,123 @@ def test_a_mesh_without_tables_is_refused():
     scenes.activate(scenes.cross())
     with pytest.raises(RuntimeError, match="Cross has no tables for Sample Limit Surface"):
         bpy.ops.object.limit_sample_remove()
+
+
+def made_for(ob: bpy.types.Object) -> list[bpy.types.Object | None]:
+    table = all_tiles.of_surface(ob)
+    return [table, tables.points_of(table), all_tiles.faces_of(ob)]
+
+
+def names_of(ob: bpy.types.Object) -> list[str]:
+    kinds = (ids.ALL_TILES_TABLE, ids.ALL_POINTS_TABLE, ids.FACES_TABLE)
+    return [f"{kind} of {ob.name}" for kind in kinds]
+
+
+def test_tables_are_renamed_with_their_surface():
+    ob = sampled(depth=4)
+    made = made_for(ob)
+    ob.name = "Renamed"
+    bpy.ops.object.limit_sample_tables()
+    assert made_for(ob) == made
+    assert [each.name for each in made] == names_of(ob)
+    assert [each.data.name for each in made] == names_of(ob)
+    made[0].name = "My Tiles"
+    bpy.ops.object.limit_sample_tables()
+    assert made[0].name == "My Tiles"
+
+
+def test_tables_of_surfaces_that_have_changed_names():
+    first = sampled(depth=4)
+    second = scenes.cross()
+    scenes.activate(second)
+    bpy.ops.object.limit_sample_tables(depth=4)
+    names, made = (first.name, second.name), (made_for(first), made_for(second))
+    first.name = "Other"
+    second.name, first.name = names
+    for ob, theirs in zip((first, second), made, strict=True):
+        scenes.activate(ob)
+        bpy.ops.object.limit_sample_tables()
+        assert made_for(ob) == theirs
+    for ob, theirs in zip((first, second), made, strict=True):
+        assert [each.name for each in theirs] == names_of(ob)
+
+
+def remove_by_script(ob: bpy.types.Object) -> None:
+    bpy.data.objects.remove(ob)
+
+
+def delete(ob: bpy.types.Object) -> None:
+    """As users do; what has users stays in the file."""
+    bpy.ops.object.select_all(action="DESELECT")
+    scenes.activate(ob)
+    ob.select_set(True)
+    bpy.ops.object.delete()
+
+
+DELETIONS = pytest.mark.parametrize("end", [remove_by_script, delete])
+
+
+def hidden_tables() -> list[bpy.types.Object]:
+    return [ob for ob in bpy.data.objects if ob.name.startswith("Limit ")]
+
+
+def test_tables_that_nodes_read_are_removed_with_a_warning(capfd):
+    ob = sampled(depth=4)
+    tree = bpy.data.node_groups.new("Pebbles", "GeometryNodeTree")
+    node = tree.nodes.new("GeometryNodeObjectInfo")
+    node.inputs["Object"].default_value = all_tiles.of_surface(ob)
+    remove_by_script(ob)
+    assert bpy.ops.object.limit_sample_remove() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "Removed 3 hidden objects of meshes that were deleted" in said
+    assert "The removed tables were used by: Pebbles" in said
+
+
+@DELETIONS
+def test_tables_of_a_mesh_that_was_deleted_are_removed(end):
+    end(sampled(depth=4))
+    assert len(hidden_tables()) == 3
+    assert bpy.ops.object.limit_sample_remove() == {"FINISHED"}
+    assert not hidden_tables()
+    assert not bpy.ops.object.limit_sample_remove.poll()
+
+
+def test_tables_stay_where_nodes_still_sample_a_mesh_that_was_deleted():
+    ob = sampled(depth=4)
+    table = all_tiles.of_surface(ob)
+    tree = bpy.data.node_groups.new("Pebbles", "GeometryNodeTree")
+    tree.nodes.new("GeometryNodeObjectInfo").inputs["Object"].default_value = table
+    delete(ob)
+    other = scenes.cross()
+    scenes.activate(other)
+    assert bpy.ops.object.limit_sample_tables(depth=4) == {"FINISHED"}
+    assert tables.surface_of(table) == ob
+    bpy.data.node_groups.remove(tree)
+    remove(other)
+    assert not hidden_tables()
+
+
+@DELETIONS
+def test_tables_of_deleted_meshes_are_removed_with_those_of_the_next_one(end, capfd):
+    end(sampled(depth=4))
+    other = scenes.cross()
+    scenes.activate(other)
+    assert bpy.ops.object.limit_sample_tables(depth=4) == {"FINISHED"}
+    assert "Removed 3 hidden objects of meshes that were deleted" in capfd.readouterr().out
+    assert set(hidden_tables()) == set(made_for(other))
+    end(other)
+    third = scenes.cross()
+    remove(third)
+    assert not hidden_tables()
+    with pytest.raises(RuntimeError, match="has no tables for Sample Limit Surface"):
+        bpy.ops.object.limit_sample_remove()
+
+
+def test_tables_that_have_lost_their_modifier_are_no_leftovers():
+    """Nothing tells whose they are."""
+    ob = sampled(depth=4)
+    table = all_tiles.of_surface(ob)
+    table.modifiers.clear()
+    scenes.activate(scenes.cross())
+    bpy.ops.object.limit_sample_tables(depth=4)
+    assert table.name == f"{ids.ALL_TILES_TABLE} of Holes"

@@ -111,10 +111,15 @@ def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
     return _value(modifier, key) if key else None
 
 
+def has_input(modifier: bpy.types.NodesModifier, name: str) -> bool:
+    """Tells whether nobody has removed or renamed this input of the group."""
+    return bool(_identifier(modifier, name))
+
+
 def check_inputs(modifier: bpy.types.NodesModifier, *names: str) -> None:
     """Raises RefusalError if somebody has removed or renamed an input of the group."""
     for name in names:
-        if not _identifier(modifier, name):
+        if not has_input(modifier, name):
             raise RefusalError(
                 f"The node group {modifier.node_group.name} has been changed: it has no input "
                 f"{name} any more. Give the input this name again, or delete the group and run "

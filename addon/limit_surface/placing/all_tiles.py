@@ -9,8 +9,9 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
-from ..nodes import locate
+from ..nodes import groups, locate
 from ..nodes.tiles import ROWS_OF_A_TILE
 from ..reading import attributes, cage
 from ..tasks.job import Progress
@@ -132,16 +133,70 @@ def remove(surface: bpy.types.Object) -> list[str]:
     """Removes the tables of all tiles of a surface and the mesh of its faces, and returns the names
     of what has read them. Raises RefusalError where there are none.
     """
-    table, faces = of_surface(surface), faces_of(surface)
-    if table is None and faces is None:
+    found = [ob for ob in (of_surface(surface), faces_of(surface)) if ob is not None]
+    if not found:
         raise RefusalError(f"{surface.name} has no tables for {ids.SAMPLE_GROUP}")
-    readers = {reader.name for ob in (table, faces) if ob for reader in tables.readers(ob)}
-    if table is not None:
-        tables.remove(table)
-    if faces is not None:
-        tables.remove_object(faces)
+    readers = _remove(found)
     following.remove_unused_capture(surface)
-    return sorted(readers)
+    return readers
+
+
+def left_behind() -> list[bpy.types.Object]:
+    """Returns the file's own tables of all tiles, and meshes of faces, whose surface was
+    deleted.
+    """
+    # to look for the group is quicker than to look at all objects
+    if not any(groups.is_of(group, ids.TILES_GROUP) for group in bpy.data.node_groups):
+        return []
+    return [ob for ob in bpy.data.objects if _is_left_behind(ob)]
+
+
+def remove_left_behind() -> tuple[str, list[str]]:
+    """Removes them. Returns a sentence for the report, or nothing where there are none, and the
+    names of what has read them.
+    """
+    found = left_behind()
+    if not found:
+        return "", []
+    before = len(bpy.data.objects)
+    readers = _remove(found)
+    count = before - len(bpy.data.objects)
+    return f"Removed {counted(count, 'hidden objects')} of meshes that were deleted", readers
+
+
+def _is_left_behind(ob: bpy.types.Object) -> bool:
+    if not (ob.hide_select and tables.is_own(ob)):
+        return False
+    if ids.ALL_TILES_MARK in ob:
+        modifier = next(groups.modifiers(ob, ids.TILES_GROUP), None)
+        if modifier is None or not groups.has_input(modifier, "Surface"):
+            return False  # nothing tells whose table it is
+        surface = tables.surface_of(ob)
+    elif ids.FACES_MARK in ob:
+        surface = ob.parent
+    else:
+        return False
+    return surface is None or (_is_deleted(surface) and not tables.readers(ob))
+
+
+def _is_deleted(surface: bpy.types.Object) -> bool:
+    """Tells whether users have deleted the surface in a window. Blender keeps it then in the file,
+    but in no collection, as long as tables refer to it; and nodes go on sampling it.
+    """
+    return not (surface.library or surface.users_collection or surface.use_fake_user)
+
+
+def _remove(found: list[bpy.types.Object]) -> list[str]:
+    """Removes these objects and the tables of points that they read. Returns the names of what has
+    read them.
+    """
+    names = {reader.name for ob in found for reader in tables.readers(ob)}
+    for ob in found:
+        if ids.ALL_TILES_MARK in ob:
+            tables.remove(ob)
+        else:
+            tables.remove_object(ob)
+    return sorted(names)
 
 
 def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:

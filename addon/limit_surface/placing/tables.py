@@ -262,7 +262,7 @@ def hidden_object(
     kind: str, whose: bpy.types.Object, found: bpy.types.Object | None = None
 ) -> bpy.types.Object:
     """Returns a hidden object that belongs to another one: what was found, or a new object with an
-    empty mesh.
+    empty mesh. It is named after its owner, which may have been renamed since.
 
     It stands in the scene's own collection, never beside its owner. Blender makes a rigid body of
     whatever comes into the collection of the rigid bodies, and users put the members of collections
@@ -273,6 +273,8 @@ def hidden_object(
         name = _name(kind, whose)
         ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
         ob.hide_viewport = ob.hide_render = ob.hide_select = True
+    elif ob.name.startswith(f"{kind} of "):
+        _rename(ob, _name(kind, whose))
     home = bpy.context.scene.collection
     # earlier versions of the extension put it beside its owner
     for collection in set(ob.users_collection).intersection(whose.users_collection) - {home}:
@@ -282,6 +284,23 @@ def hidden_object(
     if not ob.users_collection:
         home.objects.link(ob)
     return ob
+
+
+def _rename(ob: bpy.types.Object, name: str) -> None:
+    """Renames a hidden object. Another hidden object that has the name gets the old one: if two
+    surfaces have changed names, both objects are then named after their owners.
+    """
+    before = ob.name
+    if before == name:
+        return
+    other = bpy.data.objects.get((name, None))
+    is_hidden = other is not None and other.hide_select and other.hide_viewport
+    if other is not None and is_hidden and is_own(other):
+        ob.name = f"{before}*"
+        other.name = before
+    ob.name = name
+    if ob.data.users == 1:
+        ob.data.name = ob.name
 
 
 def copy_of(table: bpy.types.Object, kind: str, whose: bpy.types.Object) -> bpy.types.Object:

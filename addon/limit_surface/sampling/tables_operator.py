@@ -6,7 +6,7 @@ from bpy.props import IntProperty
 
 from .. import ids
 from ..counting import counted
-from ..placing.all_tiles import AllTiles, settings_of
+from ..placing.all_tiles import AllTiles, remove_left_behind, settings_of
 from ..placing.mending import mended
 from ..tasks.job import Job, Progress
 from ..tasks.properties import draw_summary
@@ -69,12 +69,17 @@ class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
         return self.watch(context, Job(work), f"Making tables of {surface.name}")
 
     def finish(self, _context: bpy.types.Context, made: AllTiles) -> set[str]:
+        left, readers = remove_left_behind()
         with mended():
             made.write()
         self.summary = (
             f"{counted(len(made.tree.tiles.tile_points), 'tiles')} of {made.surface_name}"
         )
-        self.report({"INFO"}, self.summary)
+        if left:
+            self.summary += f"\n{left}"
+        self.report({"INFO"}, self.summary.replace("\n", "; "))
+        if readers:
+            self.report({"WARNING"}, f"The removed tables were used by: {', '.join(readers)}")
         return {"FINISHED"}
 
     def draw(self, _context: bpy.types.Context) -> None:
