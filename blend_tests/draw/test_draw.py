@@ -274,6 +274,26 @@ def test_a_drawing_without_strokes_is_continued(target):
     )
 
 
+def test_strokes_of_a_script_are_mirrored(capfd):
+    target = scenes.flat_grid(4)
+    for vertex in target.data.vertices:
+        vertex.co.x -= 2
+    stroke = drawn.Given([0, 0], [(0.2, 0.3), (0.8, 0.6)], [1.0, 0.5])
+    assert draw([stroke], use_mirror=True, spline="POLY", radius=0.0) == {"FINISHED"}
+    first, second = (drawn.control_points(s) for s in bpy.context.active_object.data.splines)
+    np.testing.assert_allclose(first * [-1, 1, 1], second, atol=1e-5)
+    radii = [[p.radius for p in s.points] for s in bpy.context.active_object.data.splines]
+    np.testing.assert_allclose(radii[0], radii[1], atol=1e-5)
+    assert "Warning" not in capfd.readouterr().out
+    scenes.activate(target)
+    for vertex in target.data.vertices:
+        vertex.co.x += 2
+    bpy.context.view_layer.update()
+    assert draw([stroke], use_mirror=True) == {"FINISHED"}
+    assert len(bpy.context.active_object.data.splines) == 1
+    assert "1 stroke has no mirror image or only a part of it" in capfd.readouterr().out
+
+
 @pytest.fixture
 def bent():
     """A flat grid, and a shape key that bends it."""

@@ -174,6 +174,43 @@ def test_menu_offers_the_operators():
         assert properties_of(operator)
 
 
+def shown_in_draw_panel():
+    panel = bpy.types.VIEW3D_PT_limit_draw
+    assert panel.poll(bpy.context)
+    layout = drawn(panel)
+    assert layout.operator.call_args.args == (ids.DRAW,)
+    last = bpy.context.window_manager.operator_properties_last(ids.DRAW)
+    every = layout.prop.call_args_list + layout.row().prop.call_args_list
+    assert {call.args[0].bl_rna.identifier for call in every} == {last.bl_rna.identifier}
+    return {call.args[1] for call in every}
+
+
+def test_what_counts_while_drawing_is_set_beforehand():
+    assert not bpy.types.VIEW3D_PT_limit_draw.poll(bpy.context)
+    ob = scenes.cross()
+    scenes.activate(ob)
+    while_drawing = {"steadying", "use_pressure", "use_mirror", "use_join", "brush"}
+    made = {"output", "spline", "tolerance", "offset", "radius", "bevel_resolution", "follow"}
+    assert shown_in_draw_panel() == while_drawing | made
+    last = bpy.context.window_manager.operator_properties_last(ids.DRAW)
+    last.output = "GUIDES"
+    try:
+        as_strands = shown_in_draw_panel()
+    finally:
+        last.output = "CURVE"
+    every = as_strands | while_drawing | made
+    hidden = {"rna_type", "summary", "strokes", "removed", "changes_active", "is_drawn"}
+    assert every == set(properties_of(ids.DRAW).keys()) - hidden
+    point = {"name": "", "radius": 1.0, "is_closed": False}
+    strokes = [
+        point | {"face": 0, "uv": (0.2, 0.2), "is_first": True},
+        point | {"face": 0, "uv": (0.8, 0.2), "is_first": False},
+    ]
+    bpy.ops.view3d.limit_draw(strokes=strokes)
+    assert bpy.context.active_object.type == "CURVE"
+    assert shown_in_draw_panel() == while_drawing | {"spline", "tolerance"}
+
+
 def choices(name, operator=ids.HAIR_ADD):
     return properties_of(operator)[name].enum_items.keys()
 

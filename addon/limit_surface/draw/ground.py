@@ -149,7 +149,16 @@ class Ground:
         is_there = np.abs(above) <= MIRROR_ABOVE * self.size
         return hits.position, is_there & (beside <= MIRROR_BESIDE * self.size)
 
-    def mirror_stroke(self, stroke: Stroke, tolerance: float) -> list[Stroke]:
+    def mirror_image(self, stroke: Stroke, tolerance: float) -> tuple[list[Stroke], bool]:
+        """Returns the mirror image of a stroke, as far as the surface is there, and whether it is
+        there everywhere.
+        """
+        _places, is_there = self.mirror_places(stroke.position)
+        pieces = stroke.pieces(is_there)
+        laid = [each for piece in pieces for each in self._mirror_stroke(piece, tolerance)]
+        return laid, bool(is_there.all())
+
+    def _mirror_stroke(self, stroke: Stroke, tolerance: float) -> list[Stroke]:
         points, radius = self.mirrored(stroke.position), stroke.radius
         if stroke.is_closed:
             points, radius = points[:-1], radius[:-1]

@@ -48,6 +48,12 @@ class VIEW3D_OT_limit_draw(
         description="Whether the active curve was changed, and no new object was made",
         options={"HIDDEN", "SKIP_SAVE"},
     )
+    is_drawn: BoolProperty(
+        name="Is Drawn",
+        description="Whether the strokes were drawn with the mouse or a pen, so that they have "
+        "their mirror images already",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
     steadying: IntProperty(
         name="Steady",
         description="Number of times that new strokes are smoothed. 8 times are enough to remove "
@@ -94,6 +100,8 @@ class VIEW3D_OT_limit_draw(
             cls.poll_message_set(str(error))
             return False
         return True
+
+    draw_next = staticmethod(properties.draw_next)
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
@@ -201,6 +209,7 @@ class VIEW3D_OT_limit_draw(
             self.report({"INFO"}, "Nothing was drawn")
             return {"CANCELLED"}
         stroke.write(session.changed, self.strokes)
+        self.is_drawn = True
         self.removed.clear()
         for number in session.removed:
             self.removed.add().index = number
@@ -218,6 +227,8 @@ class VIEW3D_OT_limit_draw(
             curve_object.check_places(found.edited, ground, context.evaluated_depsgraph_get())
         strokes = result.read_strokes(self.strokes, ground, tolerance)
         result.warn_of_pieces(self, len(strokes), stroke.count(self.strokes))
+        if self.use_mirror and not self.is_drawn:
+            strokes = result.with_mirror_images(self, strokes, ground, tolerance)
         removed = [each.index for each in self.removed]
         if removed and found.edited is None:
             raise RefusalError(

@@ -77,9 +77,30 @@ class DrawingProperties(FitProperties):
     )
 
 
-def draw(layout: bpy.types.UILayout, of: bpy.types.OperatorProperties, is_new: bool) -> None:
-    """Draws the properties; a Curve object that exists keeps what belongs to all its splines."""
-    is_curve = of.output == "CURVE"
+#: What has an effect only while somebody draws
+WHILE_DRAWING = ("steadying", "use_pressure", "use_mirror", "use_join", "brush")
+
+
+def draw_next(layout: bpy.types.UILayout, of: bpy.types.OperatorProperties, is_new: bool) -> None:
+    """Draws the settings for the next strokes. A drawing that exists is continued with its own
+    offset.
+    """
+    for name in WHILE_DRAWING:
+        layout.prop(of, name)
+    layout.separator()
+    draw(layout, of, is_new, has_offset=is_new)
+
+
+def draw(
+    layout: bpy.types.UILayout,
+    of: bpy.types.OperatorProperties,
+    is_new: bool,
+    has_offset: bool = True,
+) -> None:
+    """Draws what is made of strokes. A Curve object that exists keeps what belongs to all its
+    splines.
+    """
+    is_curve = not is_new or of.output == "CURVE"
     if is_new:
         layout.prop(of, "output")
     if is_curve:
@@ -87,7 +108,8 @@ def draw(layout: bpy.types.UILayout, of: bpy.types.OperatorProperties, is_new: b
         layout.prop(of, "tolerance")
     else:
         layout.prop(of, "points")
-    layout.prop(of, "offset")
+    if has_offset:
+        layout.prop(of, "offset")
     if is_new:
         layout.prop(of, "radius")
         if is_curve:

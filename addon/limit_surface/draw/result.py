@@ -39,6 +39,27 @@ def read_strokes(
     return found
 
 
+def with_mirror_images(
+    operator: bpy.types.Operator, strokes: list[Stroke], ground: Ground, tolerance: float
+) -> list[Stroke]:
+    """Returns each stroke and its mirror image, and says it where the surface has no place for
+    it.
+    """
+    found, lacking = [], 0
+    for each in strokes:
+        images, is_whole = ground.mirror_image(each, tolerance)
+        found += [each, *images]
+        lacking += not is_whole
+    if lacking:
+        have = counted(lacking, "strokes", "has", "have")
+        operator.report(
+            {"WARNING"},
+            f"{have} no mirror image or only a part of it, because {ground.ob.name} has no surface "
+            "at the mirrored place",
+        )
+    return found
+
+
 def _point_called(first: int, row: int) -> str:
     return f"Point {first + row} of the strokes"
 

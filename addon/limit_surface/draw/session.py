@@ -177,13 +177,9 @@ class Session:
         """Returns the mirror image of a stroke, as far as the surface is there."""
         if not self.settings.is_mirrored:
             return []
-        _places, is_there = self.ground.mirror_places(stroke.position)
-        self.lacks_mirror |= not is_there.all()
-        return [
-            laid
-            for piece in stroke.pieces(is_there)
-            for laid in self.ground.mirror_stroke(piece, self.settings.tolerance)
-        ]
+        laid, is_whole = self.ground.mirror_image(stroke, self.settings.tolerance)
+        self.lacks_mirror |= not is_whole
+        return laid
 
     def _add(self, new: Stroke, reach: float) -> None:
         """Steadies a stroke and adds it, at the end of another one where it begins there."""

@@ -2,6 +2,7 @@
 """The sidebar tab and the menu entries."""
 
 from .distribution import VIEW3D_PT_limit_hair, VIEW3D_PT_limit_points
+from .drawing import VIEW3D_PT_limit_draw
 from .menus import VIEW3D_MT_object_limit_surface, append_menus, remove_menus
 from .panel import VIEW3D_PT_limit_surface
 from .presets import (
@@ -22,4 +23,5 @@ classes = (
     VIEW3D_PT_limit_points_presets,
     VIEW3D_PT_limit_hair,
     VIEW3D_PT_limit_points,
+    VIEW3D_PT_limit_draw,
 )

@@ -14,7 +14,7 @@ from ..tasks import wrapped_text
 from .presets import VIEW3D_PT_limit_hair_presets, VIEW3D_PT_limit_points_presets
 
 
-def _class_of(operator: str) -> Any:
+def class_of(operator: str) -> Any:
     """Returns the class of an operator, which Blender knows by another name."""
     area, name = operator.split(".")
     return getattr(bpy.types, f"{area.upper()}_OT_{name}")
@@ -44,7 +44,7 @@ class _DistributionPanel:
         layout.use_property_split = True
         settings = context.window_manager.operator_properties_last(self.operator)
         distribution_properties.draw(layout, settings, context)
-        _class_of(self.operator).draw_own(layout, settings)
+        class_of(self.operator).draw_own(layout, settings)
         layout.prop(settings, "follow")
         wrapped_text.draw(layout, live_count.text(context, settings, self.noun), "INFO")
         layout.operator(self.operator)
