@@ -387,6 +387,15 @@ def test_roots_of_another_mesh():
     assert ids.CURVATURE_MEAN not in hair.data.attributes
 
 
+@pytest.mark.parametrize(("u", "said"), [(float("nan"), "nan"), (3, "3")])
+def test_locations_that_are_none_are_named(u, said):
+    ob = paraboloid()
+    hair = scenes.add_hair(ob, per_side=1)
+    hair.data.attributes[ids.UV].data[1].vector = (u, 0.5)
+    reason = f"A location of {hair.name} has u = {said} and v = 0.5, which must be 0 to 1"
+    check_refused(f"{reason}: somebody has changed the attribute limit_uv", on="ROOTS")
+
+
 def test_measuring_stops_where_it_is_cancelled(monkeypatch):
     monkeypatch.setattr(values, "PART", 16)
     found = cage.read(paraboloid(), bpy.context.evaluated_depsgraph_get())

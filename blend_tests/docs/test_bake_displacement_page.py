@@ -79,3 +79,9 @@ def test_picture_is_what_the_operator_gives(tmp_path):
     mean, worst = comparison.of_renders(tmp_path / "displacement.png", committed)
     assert mean < 1
     assert worst < 16
+
+
+def test_tooltips_of_resolutions_count_in_words_that_fit():
+    items = bpy.ops.object.limit_bake_displacement.get_rna_type().properties["face_resolution"]
+    said = [item.description for item in items.enum_items][:2]
+    assert said == [f"Divide each side of a face into {parts}" for parts in ("1 part", "2 parts")]

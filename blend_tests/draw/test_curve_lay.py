@@ -87,6 +87,7 @@ def test_report_states_the_largest_distance(target, capfd):
     ob = curve("BEZIER", over(target, PLACES))
     lay(ob, target)
     said = capfd.readouterr().out
+    assert "1 curve with " in said
     stated = float(said.split("at most ")[1].split(" from ")[0])
     found = drawn.distance_from(target, drawn.world_points(ob, 0)).max()
     assert stated <= TOLERANCE
@@ -125,7 +126,7 @@ def test_it_follows_the_mesh_afterwards(target):
     assert near.max() < 1e-5
 
 
-def test_pieces_where_the_surface_has_no_way(target):
+def test_pieces_where_the_surface_has_no_way(target, capfd):
     box = scenes.add_mesh(
         "Slab",
         [(x, y, 0.05 * z) for z in (0, 1) for y in (0, 1) for x in (0, 1)],
@@ -135,6 +136,9 @@ def test_pieces_where_the_surface_has_no_way(target):
     ob = curve("POLY", [(0.3, 0.5, 0.3), (0.5, 0.5, 0.3), (0.5, 0.5, -0.3), (0.7, 0.5, -0.3)])
     lay(ob, box)
     assert len(ob.data.splines) == 2
+    said = capfd.readouterr().out
+    assert "2 curves with " in said
+    assert "2 pieces were made of 1 curve," in said
 
 
 def test_modifiers_that_show_a_curve_elsewhere_are_named(target, capfd):

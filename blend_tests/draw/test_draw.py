@@ -421,7 +421,7 @@ def test_pieces_are_reported(to, capfd):
     draw([drawn.Given([0, to], [(0.5, 0.5), (0.5, 0.5)])])
     is_divided = len(bpy.context.active_object.data.splines) > 1
     assert is_divided == (to == 4)
-    assert ("pieces were made" in capfd.readouterr().out) == is_divided
+    assert ("2 pieces were made of 1 stroke," in capfd.readouterr().out) == is_divided
 
 
 def test_tolerances_below_single_precision_are_not_tried(target):

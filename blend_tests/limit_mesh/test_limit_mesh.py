@@ -289,7 +289,7 @@ def test_what_is_not_as_asked_for_a_linked_mesh_is_told(tmp_path, capfd):
     bpy.context.collection.objects.link(here.objects[0])
     make(here.objects[0], levels=1, hide_original=True)
     said = capfd.readouterr().out
-    assert "that renders hide it is not saved" in said
+    assert "Flat is linked from another file. Renders do not show it now, but they will" in said
     assert "it does not follow the surface: Flat is linked from another file" in said
 
 

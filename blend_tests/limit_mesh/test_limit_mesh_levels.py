@@ -177,7 +177,8 @@ def test_what_is_behind_the_camera_stays_coarse(sheet):
 
 
 def test_pixels_need_a_camera(sheet):
-    refused("no camera", level_source="PIXELS")
+    reason = "There is no camera: the scene has none. Add one, and make it the scene's camera$"
+    refused(reason, level_source="PIXELS")
 
 
 def test_faces_without_a_surface_are_left_out(capfd):

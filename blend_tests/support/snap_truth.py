@@ -6,6 +6,7 @@ Of limitsurf only evaluation is used here.
 
 import bpy
 import numpy as np
+import pytest
 import scenes
 
 SIDE = 17  # samples along each side of a face
@@ -110,3 +111,15 @@ def snap(ob: bpy.types.Object, **properties: object) -> None:
 def world_locations(objects: list[bpy.types.Object]) -> np.ndarray:
     bpy.context.view_layer.update()
     return np.array([ob.matrix_world.translation for ob in objects], np.float64)
+
+
+def refused_and_unchanged(
+    target: bpy.types.Object, thing: bpy.types.Object, match: str, **properties: object
+) -> None:
+    scenes.activate(target)
+    bpy.context.view_layer.update()
+    before = thing.matrix_world.copy(), thing.matrix_basis.copy()
+    with pytest.raises(RuntimeError, match=match):
+        bpy.ops.object.limit_snap(**properties)
+    bpy.context.view_layer.update()
+    assert (thing.matrix_world, thing.matrix_basis) == before

@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
+from ..counting import counted
 from ..images.image_files import PATH_OPTIONS
 from ..images.texture_operator import TextureProperties
 
@@ -153,7 +154,7 @@ class DisplacementProperties(TextureProperties):
         "of the face is divided. The tile is one texel wider and higher than "
         "this number",
         items=tuple(
-            (str(n), str(n), f"Divide each side of a face into {n} parts", n)
+            (str(n), str(n), f"Divide each side of a face into {counted(n, 'parts')}", n)
             for n in FACE_RESOLUTIONS
         ),
         default="16",

@@ -37,11 +37,7 @@ def read(
     """Reads the guides with so many points on each, at equal distances. Raises RefusalError for
     hair that cannot guide.
     """
-    if not followers.is_placed(ob):
-        raise RefusalError(
-            f"{ob.name} stores no places on a limit surface: run Follow Limit Surface or Snap to "
-            "Limit Surface on it first"
-        )
+    followers.check_placed(ob)
     following.check_holds(ob, surface, following.signature(found))
     places = Places.read(ob.data)
     if not len(places.rows):

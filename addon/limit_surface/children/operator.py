@@ -130,7 +130,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             cls,
             context,
             lambda: followers.ground_of(context.active_object) is not None,
-            "Make hair that stands on a mesh active: its strands become the guides",
+            _nothing(context.active_object),
         )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -313,3 +313,10 @@ def _curves(ground: Ground, radius: float, uv_map: str, progress: Progress) -> S
 def _followed(ground: Ground) -> Followed:
     assert isinstance(ground.scattered, Followed)
     return ground.scattered
+
+
+def _nothing(active: bpy.types.Object | None) -> str:
+    """Returns what to do where the active object is no hair on a surface."""
+    if active is not None and active.type == "CURVES" and followers.is_placed(active):
+        return followers.why_not_placed(active)
+    return "Make hair that stands on a mesh active: its strands become the guides"

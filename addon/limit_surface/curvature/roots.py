@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
+from ..placing.places import check_uv
 from ..reading import attributes, cage, transform
 from ..tasks.editable import check_data_editable
 from ..tasks.job import Progress, part_of
@@ -134,9 +135,12 @@ def _read(ob: bpy.types.Object, found: cage.Cage, surface: bpy.types.Object) -> 
     _check(ob)
     face = attributes.read(ob.data, ids.FACE)
     uv = attributes.read(ob.data, ids.UV).astype(np.float64)
-    there = face != NOWHERE
-    known = (face[there] >= 0) & (face[there] < found.ptex_face_count)
-    if not (known.all() and ((uv[there] >= 0) & (uv[there] <= 1)).all()):
-        raise RefusalError(f"{ob.name} stands on faces that {surface.name} does not have")
+    face[face < 0] = NOWHERE
+    if face.max(initial=NOWHERE) >= found.ptex_face_count:
+        raise RefusalError(
+            f"{ob.name} stands on faces that {surface.name} does not have: the faces have changed "
+            "since it was placed"
+        )
+    check_uv(uv[face != NOWHERE], f"A location of {ob.name}")
     matrix = transform.world_matrix(ob)
     return _Part(ObjectKey.of(ob), ObjectKey.of(surface), face, uv, matrix, found)

@@ -75,8 +75,9 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.t
             curve_object.change(context, ob, ground, numbers, made)
             curve_object.store_offset(ob.data, self.offset)
         everything = [spline for made, _numbers in laid for spline in made]
-        self.summary = result.summary(everything, 0, ground, self.offset)
-        result.warn_of_pieces(self, len(everything), sum(len(numbers) for _made, numbers in laid))
+        self.summary = result.summary(everything, 0, ground, self.offset, "curves")
+        given = sum(len(numbers) for _made, numbers in laid)
+        result.warn_of_pieces(self, len(everything), given, "curves")
         result.warn_of_deviation(self, tolerance, everything)
         result.warn_of_modifiers(self, curves)
         self.report({"INFO"}, "; ".join([self.summary, *ground.posed.cage.notes]))

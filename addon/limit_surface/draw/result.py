@@ -100,12 +100,15 @@ def check_numbers(ob: bpy.types.Object, removed: Sequence[int]) -> None:
             raise RefusalError(f"{ob.name} has no spline {number}: it has {count}")
 
 
-def summary(made: Sequence[Spline], removed: int, ground: Ground, offset: float) -> str:
+def summary(
+    made: Sequence[Spline], removed: int, ground: Ground, offset: float, noun: str = "strokes"
+) -> str:
+    """Returns what was made; `noun` is what the new splines are called, in the plural."""
     if not made:
         return f"{counted(removed, 'splines')} removed"
     points = sum(len(spline.position) for spline in made)
     farthest = max(spline.deviation for spline in made)
-    made_of = f"{counted(len(made), 'strokes')} with {points:,} control points"
+    made_of = f"{counted(len(made), noun)} with {points:,} control points"
     if offset:
         return (
             f"{made_of}, {offset:.4g} away from {ground.ob.name} along its normal, at most "
@@ -130,13 +133,15 @@ def warn_of_deviation(
         )
 
 
-def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
-    """Says it where curves were divided, because no short path along the surface was found."""
+def warn_of_pieces(
+    operator: bpy.types.Operator, laid: int, given: int, noun: str = "strokes"
+) -> None:
+    """Says it where strokes or curves were divided, because no short path was found."""
     if laid > given:
         were = counted(laid, "pieces", "was", "were")
         operator.report(
             {"WARNING"},
-            f"{were} made of {counted(given, 'curves')}, because no short path along the surface "
+            f"{were} made of {counted(given, noun)}, because no short path along the surface "
             "joins the pieces",
         )
 

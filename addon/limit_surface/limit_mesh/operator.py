@@ -192,8 +192,9 @@ class OBJECT_OT_limit_mesh(
             if surface.library:
                 self.report(
                     {"WARNING"},
-                    f"{surface.name} is linked from another file: that renders hide it is not "
-                    "saved in this one",
+                    f"{surface.name} is linked from another file. Renders do not show it now, but "
+                    "they will when this file is opened again, because Blender does not save this "
+                    "setting of linked objects",
                 )
         self._report(surface, result)
         return {"FINISHED"}

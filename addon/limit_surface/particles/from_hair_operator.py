@@ -140,12 +140,9 @@ def _surface_of(hair: bpy.types.Object, context: bpy.types.Context) -> bpy.types
     """Returns the surface of hair. Raises RefusalError where the hair is not bound to one, or this
     one cannot get a particle system.
     """
+    followers.check_placed(hair)
     surface = followers.surface_of(hair)
-    if surface is None or not followers.is_placed(hair):
-        raise RefusalError(
-            f"{hair.name} stores no places on a limit surface: run Follow Limit Surface or Snap to "
-            "Limit Surface on it first"
-        )
+    assert surface is not None
     if not len(hair.data.curves):
         raise RefusalError(f"{hair.name} has no strands")
     if not surface.is_editable or surface.override_library:

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..errors import RefusalError
 from ..nodes import follow, groups
 from ..nodes.follow import SURFACE, TILES
 from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
@@ -93,6 +94,29 @@ def has_own_places(ob: bpy.types.Object) -> bool:
     """
     is_drawing = ob.type == "CURVE" and ids.FACE in ob.data
     return is_drawing or is_placed(ob) or bool(modifier_of(ob) or live_modifier_of(ob))
+
+
+def check_placed(hair: bpy.types.Object) -> None:
+    """Raises RefusalError for hair that does not stand on a surface."""
+    if reason := why_not_placed(hair):
+        raise RefusalError(reason)
+
+
+def why_not_placed(hair: bpy.types.Object) -> str:
+    """Returns the reason why hair does not stand on a surface, with a remedy; nothing where it
+    does.
+    """
+    if not is_placed(hair):
+        return (
+            f"{hair.name} stores no places on a limit surface: run Follow Limit Surface or Snap to "
+            "Limit Surface on it first"
+        )
+    if surface_of(hair) is None:
+        return (
+            f"The surface of {hair.name} was deleted: select the hair and then another mesh, and "
+            "run Snap to Limit Surface"
+        )
+    return ""
 
 
 def modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:

@@ -53,6 +53,16 @@ def lacking(data: bpy.types.ID, needed: Mapping[str, tuple[str, str]]) -> str:
     return ""
 
 
+def check_uv(uv: np.ndarray, called: str) -> None:
+    """Raises RefusalError for u and v (n, 2) that are not between 0 and 1, or are no numbers."""
+    if not (uv.min(initial=0) >= 0 and uv.max(initial=0) <= 1):
+        u, v = uv[(~((uv >= 0) & (uv <= 1))).any(axis=1).argmax()]
+        raise RefusalError(
+            f"{called} has u = {u:g} and v = {v:g}, which must be 0 to 1: somebody has changed the "
+            f"attribute {ids.UV}"
+        )
+
+
 @dataclass(frozen=True)
 class Places:
     """The locations of the elements that have one. All attributes of curves that were added later
@@ -120,12 +130,7 @@ class Places:
                 f"{counted(faces, 'faces')}: its topology has changed since things were placed on "
                 "it"
             )
-        if not (self.uv.min(initial=0) >= 0 and self.uv.max(initial=0) <= 1):
-            u, v = self.uv[(~((self.uv >= 0) & (self.uv <= 1))).any(axis=1).argmax()]
-            raise RefusalError(
-                f"A location on {surface} has u = {u:g} and v = {v:g}, which must be 0 to 1: "
-                f"somebody has changed the attribute {ids.UV}"
-            )
+        check_uv(self.uv, f"A location on {surface}")
 
     def check_count(self, data: bpy.types.ID) -> None:
         stored = len(data.attributes[ids.FACE].data)

@@ -15,7 +15,9 @@ def find(context: bpy.types.Context, name: str) -> bpy.types.Object:
     """Returns the camera of that name, or the scene's camera where no name is given."""
     if not name:
         if context.scene.camera is None:
-            raise RefusalError("There is no camera: the scene has none, and no name is given")
+            raise RefusalError(
+                "There is no camera: the scene has none. Add one, and make it the scene's camera"
+            )
         return context.scene.camera
     ob = bpy.data.objects.get(name)
     if ob is None or ob.type != "CAMERA":
