@@ -101,6 +101,21 @@ def rise(ob):
         ob.keyframe_insert("location", frame=frame)
 
 
+def test_drawn_strokes_are_not_mirrored_again(start, target):
+    """They have their mirror images already, as those of this stand-in for the pen would."""
+    for vertex in target.data.vertices:
+        vertex.co.x -= 2  # the mirrored place is on the surface, too
+    bpy.context.view_layer.update()
+    operator = start(use_mirror=True)
+    assert operator.enter() == {"FINISHED"}
+    drawing = bpy.context.active_object
+    assert len(drawing.data.splines) == 1
+    bpy.data.objects.remove(drawing)
+    scenes.activate(target)
+    assert operator.execute(stand_ins.window_context()) == {"FINISHED"}  # as the redo panel does
+    assert len(bpy.context.active_object.data.splines) == 1
+
+
 def test_drawing_goes_on_where_the_surface_is_in_another_frame(start, target):
     rise(target)
     bpy.context.scene.frame_set(1)
