@@ -9,6 +9,7 @@ from typing import Literal, cast
 import numpy as np
 
 from ..errors import RefusalError
+from ..images import uv_tiles
 from ..tasks.job import Progress, part_of
 from . import layouts
 from .layouts import PtexLayout, Texels, UvLayout
@@ -30,7 +31,7 @@ class Request:
 @dataclass(frozen=True)
 class Measured:
     tiles: dict[int, np.ndarray]  # pixels, (height, width, 4)
-    count: int  # number of texels that have a place
+    count: int  # number of texels inside islands; those of the margin do not count here and below
     missing: int  # number of these at which nothing was met: they hold 0
     overlapping: int  # number of these that several places share
     lowest: float  # smallest distance, or length of a vector
@@ -52,17 +53,16 @@ def measure(request: Request, progress: Progress) -> Measured:
         for _, some in layouts.parts(texels, part_of(part, PLACED, 1)):
             values, sizes = _measured(request, some)
             found = np.isfinite(sizes)
-            missing += len(found) - int(found.sum())
-            if found.any():
-                ranges.append((sizes[found].min(), sizes[found].max()))
             pixels[some.y, some.x, :3] = np.where(found[:, None], values, 0)
-        count += len(texels.x)
+            missing += int(np.count_nonzero(some.inside & ~found))
+            counting = sizes[some.inside & found]
+            if counting.size:
+                ranges.append((counting.min(), counting.max()))
+        count += int(np.count_nonzero(texels.inside))
         overlapping += int(texels.overlap.sum())
         tiles[tile] = pixels
     if not count:
-        raise RefusalError(
-            "The UV map covers no texel of the image: check that its islands lie within the image"
-        )
+        raise uv_tiles.no_texels(layout.tiles, layout.instead)
     if not ranges:
         raise RefusalError(
             f"No normal of the surface meets {request.surfaces.target.name} in the chosen "

@@ -36,6 +36,7 @@ class UvLayout:
     width: int
     height: int
     tiles: tuple[int, ...]
+    instead: str  # what users can do where the map has no texels in these tiles
     margin: int
     allow_overlap: bool
 
@@ -55,6 +56,7 @@ class UvLayout:
 class PtexLayout:
     layout: limitsurf.PtexLayout
     tiles = (FIRST_TILE,)
+    instead = ""
 
     @property
     def width(self) -> int:
@@ -100,13 +102,14 @@ def of(
     if not tiles:
         raise RefusalError(
             f"{whose}: the UV map {surfaces.found.chosen_uv_map.name} covers no texel of the UDIM "
-            "tiles 1001 to 2000"
+            f"tiles 1001 to 2000: {uv_tiles.MOVE_ISLANDS}"
         )
     texel_places.check_size(*size, len(tiles), 1, properties.allow_large)
     return UvLayout(
         uv_data,
         *size,
         tiles,
+        "" if properties.use_tiles else "turn UDIM Tiles on",
         properties.margin,
         properties.overlap == "ALLOW",
     )

@@ -11,7 +11,15 @@ import bpy
 from .. import ids
 from ..counting import by_count, counted
 from ..errors import RefusalError
-from ..images import image_files, image_names, image_pixels, material_slots, overlap, uv_tiles
+from ..images import (
+    image_files,
+    image_names,
+    image_pixels,
+    material_slots,
+    overlap,
+    texel_places,
+    uv_tiles,
+)
 from ..images.texture_operator import TextureOperator
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
@@ -148,8 +156,9 @@ class OBJECT_OT_limit_bake_displacement(
         if measured.overlapping:
             self.report({"WARNING"}, f"{ob.name}: {overlap.told(measured.overlapping)}")
         what = "lengths" if request.is_vector else "distances"
+        is_mapped = not isinstance(request.layout, PtexLayout)
         lines = [
-            f"{image.name}: {counted(measured.count, 'texels')}",
+            texel_places.told(image.name, measured.count, is_mapped=is_mapped),
             f"{what} {measured.lowest:.4g} to {measured.highest:.4g}",
         ]
         self.summary = "\n".join(lines)

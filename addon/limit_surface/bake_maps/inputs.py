@@ -52,6 +52,7 @@ class Inputs:
             settings=self.settings,
             size=self.size,
             tiles=self.tiles,
+            instead="" if self.all_tiles else "set Tiles to All",
             margin=self.margin,
             allow_overlap=self.allow_overlap,
             is_encoded=self.is_encoded,
@@ -65,6 +66,6 @@ def tiles_of(found: cage.Cage, whose: str, size: tuple[int, int]) -> tuple[int, 
     )
     if not tiles:
         raise RefusalError(
-            "The UV map covers no texel of the UDIM tiles 1001 to 2000: move its islands onto them"
+            "The UV map covers no texel of the UDIM tiles 1001 to 2000: " + uv_tiles.MOVE_ISLANDS
         )
     return tiles

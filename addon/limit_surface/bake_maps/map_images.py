@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import RefusalError
-from ..images import overlap, texel_places
+from ..images import overlap, texel_places, uv_tiles
 from ..tasks.job import Progress, part_of
 from .bodies import Body, Places
 from .maps import (
@@ -40,6 +39,7 @@ class Order:
     settings: Settings
     size: tuple[int, int]
     tiles: tuple[int, ...]
+    instead: str  # what users can do where the map has no texels in these tiles
     margin: int
     allow_overlap: bool
     is_encoded: bool  # values are mapped to 0..1
@@ -95,8 +95,7 @@ def bake(order: Order, progress: Progress) -> Baked:
         if found.texels.inside.any():
             tiles[tile] = found
     if not made.texels:
-        where = "tile 1001" if order.tiles == (1001,) else "any of the tiles"
-        raise RefusalError(f"The UV map covers no texel of {where}")
+        raise uv_tiles.no_texels(order.tiles, order.instead)
     for name in order.maps:
         if name == AREA_DISTORTION:
             _compare(tiles)

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import bpy
 
 from .. import ids
-from ..counting import counted
 from ..errors import RefusalError
 from ..images import image_files, image_pixels, texel_places
 from ..images.texture_operator import TextureOperator
@@ -93,9 +92,7 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         if warnings:
             self.report({"WARNING"}, "; ".join(warnings))
         names = ", ".join(image.name for image in named)
-        self.report(
-            {"INFO"}, "; ".join([f"{names}: {counted(made.baked.texels, 'texels')}", *lines])
-        )
+        self.report({"INFO"}, "; ".join([texel_places.told(names, made.baked.texels), *lines]))
         return {"FINISHED"}
 
     def _output(self, ob: bpy.types.Object, tiles: tuple[int, ...]) -> Output:

@@ -93,9 +93,11 @@ def texels(
     allow_overlap: bool = False,
     progress: Progress | None = None,
 ) -> limitsurf.Texels:
-    """Returns the texels of an image of so many texels across and up, for a UDIM tile. There may be
-    none: only the caller knows whether other tiles hold some. Raises RefusalError where the map
-    overlaps itself by more than folds, unless that is allowed.
+    """Returns the texels of an image of so many texels across and up, for a UDIM tile. Maybe none
+    of them lies inside an island: only the caller knows whether other tiles hold some. Then those
+    that there are belong to the margin of islands in a tile beside this one, and must not be
+    written. Raises RefusalError where the map overlaps itself by more than folds, unless that is
+    allowed.
     """
     width, height = size
     found = uv_data.rasterize(
@@ -104,6 +106,14 @@ def texels(
     if not allow_overlap:
         overlap.check(found, f" of tile {tile}" if tile != FIRST_TILE else "")
     return found
+
+
+def told(name: str, count: int, *, is_mapped: bool = True) -> str:
+    """Returns how many texels of an image were written. Where a UV map places them, those of the
+    margin do not count.
+    """
+    where = " inside islands of the UV map" if is_mapped else ""
+    return f"{name}: {counted(count, 'texels')}{where}"
 
 
 def parts(count: int, progress: Progress) -> Iterator[slice]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..counting import counted
+from ..errors import RefusalError
 from ..reading import cage, ragged_rows
 from .image_tiles import FIRST_TILE
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 ACROSS, UP = 10, 100  # the tiles that have a UDIM number: 1001 to 2000
 MOST_DOUBTFUL = 16  # tiles whose texels are looked for
+MOVE_ISLANDS = "move its islands there"
 _LAST = FIRST_TILE + ACROSS * UP - 1
 
 
@@ -67,6 +69,15 @@ def faces_outside(
     (x, y), (end_x, end_y) = faces.low.T + 1, faces.high.T + 2
     within = sums[end_y, end_x] - sums[y, end_x] - sums[end_y, x] + sums[y, x]
     return int((within < (end_x - x) * (end_y - y)).sum())
+
+
+def no_texels(tiles: Collection[int], instead: str = "") -> RefusalError:
+    """Returns the refusal of tiles none of which has texels inside islands. `instead` is what users
+    can do if they do not want to move the islands.
+    """
+    where = f"tile {next(iter(tiles))}" if len(tiles) == 1 else "any of the tiles"
+    remedy = f"{instead}, or {MOVE_ISLANDS}" if instead else MOVE_ISLANDS
+    return RefusalError(f"The UV map covers no texel of {where}: {remedy}")
 
 
 def told(count: int, tiles: Collection[int] | None = None) -> str:

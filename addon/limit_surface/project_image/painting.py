@@ -42,9 +42,9 @@ def paint(
     source: Source,
     opacity: float,
     progress: Progress,
-) -> int:
-    """Returns how many texels were painted. All others keep their values to the last bit."""
-    count = 0
+) -> np.ndarray:
+    """Returns which of the texels were painted. All others keep their values to the last bit."""
+    painted = np.zeros(len(texels.face), bool)
     whole = Places(uv_map, texels.face, texels.uv, canvas.texel)
     for rows in texel_places.parts(len(texels.face), progress):
         above, weight = source.look(whole.take(rows))
@@ -54,5 +54,5 @@ def paint(
         below = canvas.encoding.decoded(canvas.pixels[at])
         mixed = native.limitsurf.blend_over(below, above[taken], weight[taken])
         canvas.pixels[at] = canvas.encoding.encoded(mixed)
-        count += int(taken.sum())
-    return count
+        painted[rows] = taken
+    return painted

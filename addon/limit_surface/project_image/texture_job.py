@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from ..counting import counted
 from ..errors import RefusalError
 from ..images import (
     image_names,
@@ -59,6 +58,7 @@ class Order:
     def work(self, progress: Progress) -> Made:
         self.source.check()
         count, overlapping, whole = 0, 0, len(self.canvases)
+        covered, painted = False, []
         for i, (tile, canvas) in enumerate(self.canvases.items()):
             part = part_of(progress, i / whole, (i + 1) / whole)
             texels = texel_places.texels(
@@ -69,14 +69,23 @@ class Order:
                 allow_overlap=self.allow_overlap,
                 progress=part_of(part, 0, MAPPED),
             )
+            if not texels.inside.any():
+                continue
+            covered = True
             overlapping += overlap.overlapping(texels)
             painting = part_of(part, MAPPED, 1)
-            count += paint(canvas, texels, self.uv_map, self.source, self.opacity, painting)
+            taken = paint(canvas, texels, self.uv_map, self.source, self.opacity, painting)
+            count += int(np.count_nonzero(taken & texels.inside))
+            if taken.any():
+                painted.append(tile)
+        if not covered:
+            raise uv_tiles.no_texels(
+                self.canvases, "paint into an image that has the tiles of its islands"
+            )
         if not count:
             raise RefusalError(f"No part of the image {self.image} falls on the surface's UV map")
-        return Made(
-            self, count, [overlap.told(overlapping) if overlapping else "", self._outside()]
-        )
+        warnings = [overlap.told(overlapping) if overlapping else "", self._outside()]
+        return Made(self, count, tuple(painted), warnings)
 
     def _outside(self) -> str:
         """Returns a warning about the faces outside the image's tiles, or none."""
@@ -88,11 +97,12 @@ class Order:
 @dataclass(frozen=True)
 class Made:
     order: Order
-    count: int
+    count: int  # number of painted texels inside islands
+    painted: tuple[int, ...]  # the tiles that have changed
     warnings: list[str]
 
     def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> tuple[str, list[str]]:
-        target, canvases = self.order.target, self.order.canvases
+        target = self.order.target
         if isinstance(target, NewImage):
             image = image_pixels.new(
                 target.name,
@@ -105,22 +115,23 @@ class Made:
         else:
             image = target.find()
             self._check(image)
-        pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
+        pixels = {tile: self.order.canvases[tile].pixels for tile in self.painted}
         image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
         warnings = [*self.warnings, image_pixels.unsaved(image)]
         if self.order.create_material:
             shown_by = material.show(surface, image, self.order.world.cage.chosen_uv_map.name)
             warnings.append(material_slots.unseen(surface, shown_by))
-        return f"{counted(self.count, 'texels')} of {image.name}", warnings
+        return texel_places.told(image.name, self.count), warnings
 
     def _check(self, image: bpy.types.Image) -> None:
         """Raises RefusalError for an image that is not what was painted over any more."""
-        sizes = image_pixels.checked(image, to_write=True).tiles
-        if any(sizes.get(tile) != canvas.size for tile, canvas in self.order.canvases.items()):
+        sizes, canvases = image_pixels.checked(image, to_write=True).tiles, self.order.canvases
+        if any(sizes.get(tile) != canvases[tile].size for tile in self.painted):
             raise RefusalError(
                 f"The size of {image.name} has changed since the work began: run the operator again"
             )
-        if any(_sum(image_pixels.read(image, tile)) != s for tile, s in self.order.sums.items()):
+        sums = self.order.sums
+        if any(_sum(image_pixels.read(image, tile)) != sums[tile] for tile in self.painted):
             raise RefusalError(
                 f"The pixels of {image.name} were changed meanwhile: run the operator again"
             )
