@@ -12,13 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from . import image_files
+from . import image_files, temporary_files
 
 FIRST_TILE = 1001
 
@@ -77,7 +76,7 @@ def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
     stay = sizes(image).keys() - tiles.keys()
     all_tiles = {**(read_all(image) if stay else {}), **tiles}
     path, colorspace = image.filepath_raw, image.colorspace_settings.name
-    with _saved(all_tiles, image.is_float) as files:
+    with _saved(image.name, all_tiles, image.is_float) as files:
         if image.packed_files:
             image.unpack(method="REMOVE")
         image.filepath = files
@@ -92,7 +91,7 @@ def new(
     name: str, tiles: Mapping[int, np.ndarray], *, is_float: bool, is_data: bool
 ) -> bpy.types.Image:
     """Makes a packed image of these tiles."""
-    with _saved(tiles, is_float) as files:
+    with _saved(name, tiles, is_float) as files:
         image = opened(files, min(tiles))
         if is_data:
             image.colorspace_settings.name = "Non-Color"
@@ -149,9 +148,11 @@ def _tile_file(image: bpy.types.Image, number: int) -> Iterator[str]:
     if not packed:
         yield _path_of_tile(image, number)
         return
-    with TemporaryDirectory(dir=bpy.app.tempdir) as folder:
-        file = Path(folder, f"tile{Path(packed[0].filepath).suffix}")
-        file.write_bytes(packed[0].packed_file.data)
+    what = f"Tile {number} of {image.name}"
+    with temporary_files.folder(what) as folder:
+        file = folder / f"tile{Path(packed[0].filepath).suffix}"
+        with temporary_files.written(what):
+            file.write_bytes(packed[0].packed_file.data)
         yield str(file)
 
 
@@ -168,10 +169,10 @@ def _loaded(path: str) -> Iterator[bpy.types.Image]:
 
 
 @contextmanager
-def _saved(tiles: Mapping[int, np.ndarray], is_float: bool) -> Iterator[str]:
+def _saved(whose: str, tiles: Mapping[int, np.ndarray], is_float: bool) -> Iterator[str]:
     """Saves the tiles' numbers unchanged in files, and returns their common path, with <UDIM>."""
     kind = image_files.EXR_32 if is_float else image_files.PNG_8
-    with TemporaryDirectory(dir=bpy.app.tempdir) as folder:
+    with temporary_files.folder(f"The tiles of {whose}") as folder:
         for number, pixels in tiles.items():
             image_files.save_pixels(pixels, f"{folder}/tile.{number}{kind.suffix}", kind)
         yield f"{folder}/tile.<UDIM>{kind.suffix}"

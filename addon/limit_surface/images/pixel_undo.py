@@ -20,7 +20,7 @@ import bpy
 import numpy as np
 
 from .. import ids
-from . import image_tiles
+from . import image_tiles, temporary_files
 
 MOST_KEPT = 8 << 30  # in bytes; the oldest pixels are dropped where more would be stored
 COMPARED = 1 << 20  # numbers compared at a time, so that no large array is made for it
@@ -33,12 +33,18 @@ class _Kept:
     files: Mapping[int, Path]  # the pixels by tile
 
     @classmethod
-    def of(cls, tiles: Mapping[int, np.ndarray], mark: str) -> _Kept:
-        files = {}
-        for number, pixels in tiles.items():
-            files[number] = Path(bpy.app.tempdir, f"limit_surface_{mark}_{number}.npy")
-            np.save(files[number], np.ascontiguousarray(pixels, np.float32))
-        return cls(files)
+    def of(cls, tiles: Mapping[int, np.ndarray], mark: str, whose: str) -> _Kept:
+        """Stores the pixels of the image `whose`. Raises RefusalError where that is impossible."""
+        folder = Path(bpy.app.tempdir)
+        kept = cls({number: folder / f"limit_surface_{mark}_{number}.npy" for number in tiles})
+        try:
+            with temporary_files.written(f"The pixels of {whose}", " for undo"):
+                for number, pixels in tiles.items():
+                    np.save(kept.files[number], np.ascontiguousarray(pixels, np.float32))
+        except BaseException:
+            kept.drop()  # the last file may have been written in part
+            raise
+        return kept
 
     def holds(self, tiles: Mapping[int, np.ndarray]) -> bool:
         """Tells whether these are the very pixels, bit by bit."""
@@ -93,11 +99,11 @@ def recorded(image: bpy.types.Image) -> Iterator[Callable[[Mapping[int, np.ndarr
     if shown and shown.kept and shown.kept.holds(now):
         before = shown.kept
     else:
-        before = _Kept.of(now, f"{mark}_before")
+        before = _Kept.of(now, f"{mark}_before", image.name)
     del now
 
     def tell(tiles: Mapping[int, np.ndarray]) -> None:
-        stored.append(_Kept.of(tiles, f"{mark}_after"))
+        stored.append(_Kept.of(tiles, f"{mark}_after", image.name))
 
     try:
         yield tell
