@@ -12,13 +12,13 @@ import numpy as np
 from ..errors import RefusalError
 from ..images import baked_images, image_files
 from ..images.baked_images import Target
-from ..images.image_files import EXR_32
+from ..images.image_files import EXR_32, GivenPath
 
 
 @dataclass(frozen=True)
 class Output:
     name: str
-    path: Path | None
+    path: GivenPath | None
     reuse: bool  # whether an existing image of that name is written to
     tiles: tuple[int, ...]
     size: tuple[int, int]
@@ -26,7 +26,7 @@ class Output:
     def check(self) -> None:
         """Raises RefusalError for what could not be written after the work."""
         if self.path:
-            self._check_path(self.path)
+            self._check_path(self.path.absolute)
         self._target.check(self.tiles)
 
     def put(self, pixels: dict[int, np.ndarray]) -> tuple[bpy.types.Image, str]:

@@ -5,14 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import bpy
 import numpy as np
 
 from ..images import baked_images, image_names
 from ..images.baked_images import Target
-from ..images.image_files import FileKind
+from ..images.image_files import FileKind, GivenPath
 from .maps import KINDS
 
 
@@ -20,7 +19,7 @@ from .maps import KINDS
 class Output:
     name: str  # the beginning of the images' names; the name of the map follows
     kind: FileKind
-    folder: Path | None
+    folder: GivenPath | None
     reuse: bool  # whether existing images of these names are written to
     tiles: tuple[int, ...]
     size: tuple[int, int]
@@ -51,7 +50,7 @@ class Output:
         )
         return replace(target, path=self._path(target, tiles)) if self.folder else target
 
-    def _path(self, target: Target, tiles: Collection[int]) -> Path:
+    def _path(self, target: Target, tiles: Collection[int]) -> GivenPath:
         assert self.folder is not None
         image = target.existing()
         is_tiled = baked_images.is_tiled(tiles) or (image and image.source == "TILED")

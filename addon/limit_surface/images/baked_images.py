@@ -10,13 +10,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
 import bpy
 import numpy as np
 
 from . import file_replacing, image_files, image_pixels, image_tiles, reused_images
-from .image_files import FileKind
+from .image_files import FileKind, GivenPath
 from .image_tiles import FIRST_TILE
 
 MOST_NAMED = 5  # tiles that a warning names
@@ -29,7 +28,7 @@ class Target:
     name: str
     size: tuple[int, int]
     kind: FileKind
-    path: Path | None  # of its file, with <UDIM> where each tile has its own; None for no file
+    path: GivenPath | None  # of its file, with <UDIM> where each tile has its own; None for no file
     has_alpha: bool
     reuse: bool  # whether an existing image of that name is written to
     option: str  # the property that, turned off, has a new image made
@@ -50,11 +49,12 @@ class Target:
                 image, tiles=tiles, size=self.size, is_float=self.is_float, option=self.option
             )
         if self.path:
-            image_files.check_folder(self.path.parent)
+            path = self.path.absolute
+            image_files.check_folder(path.parent)
             for tile in tiles:
-                file_replacing.check(image_pixels.of_tile(self.path, tile))
+                file_replacing.check(image_pixels.of_tile(path, tile))
             if image:
-                reused_images.check_saves_all(image, tiles, self.path, self.option)
+                reused_images.check_saves_all(image, tiles, path, self.option)
 
 
 def is_tiled(tiles: Collection[int]) -> bool:
@@ -80,7 +80,8 @@ def put(
     with ExitStack() as all_or_none, file_replacing.all_or_none() as files:
         for key, target in targets.items():
             if target.path:
-                image_pixels.save_tiles(baked[key], target.path, target.kind, files.beside)
+                at = target.path.absolute
+                image_pixels.save_tiles(baked[key], at, target.kind, files.beside)
         for key, target in targets.items():
             pixels, image = baked.pop(key), existing[key]
             if image:
@@ -92,10 +93,11 @@ def put(
         files.place()
         for key, target in targets.items():
             if target.path and not existing[key]:
-                images[key] = all_or_none.enter_context(_loaded(target, target.path, tiles[key]))
+                loaded = _loaded(target, target.path.stored, tiles[key])
+                images[key] = all_or_none.enter_context(loaded)
     for key, target in targets.items():
         if target.path and existing[key]:
-            image_pixels.attach(images[key], target.path)
+            image_pixels.attach(images[key], target.path.stored)
     return {key: images[key] for key in targets}
 
 
@@ -133,9 +135,9 @@ def _made(target: Target, pixels: Mapping[int, np.ndarray]) -> Iterator[bpy.type
 
 
 @contextmanager
-def _loaded(target: Target, path: Path, tiles: list[int]) -> Iterator[bpy.types.Image]:
+def _loaded(target: Target, path: str, tiles: list[int]) -> Iterator[bpy.types.Image]:
     if not is_tiled(tiles):
-        path = Path(image_pixels.of_tile(path, FIRST_TILE))
+        path = image_pixels.of_tile(path, FIRST_TILE)
     with _removed_on_error(image_pixels.load(path, tiles)) as image:
         image.name = target.name
         yield image

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
@@ -93,15 +93,32 @@ def save_pixels(pixels: np.ndarray, path: str | Path, kind: FileKind) -> None:
         bpy.data.images.remove(image)
 
 
-def given_path(text: str) -> Path:
-    """Returns the absolute path. Raises RefusalError where a path is relative to the .blend file
-    and that has not been saved.
+@dataclass(frozen=True)
+class GivenPath:
+    """A path as users have given it: where the file is, and how the .blend file refers to it."""
+
+    absolute: Path
+    is_relative: bool = False  # to the .blend file, so that both can move together
+
+    def __truediv__(self, name: str) -> GivenPath:
+        return replace(self, absolute=self.absolute / name)
+
+    @property
+    def stored(self) -> str:
+        """The path for the .blend file, which may have been saved elsewhere meanwhile."""
+        return bpy.path.relpath(str(self.absolute)) if self.is_relative else str(self.absolute)
+
+
+def given_path(text: str) -> GivenPath:
+    """Raises RefusalError where the path is relative to the .blend file and that has not been
+    saved.
     """
-    if text.startswith("//") and not bpy.data.filepath:
+    is_relative = text.startswith("//")
+    if is_relative and not bpy.data.filepath:
         raise RefusalError(
             f"{text} is relative to the .blend file, which has not been saved: save it first"
         )
-    return Path(bpy.path.abspath(text))
+    return GivenPath(Path(bpy.path.abspath(text)), is_relative)
 
 
 def check_folder(folder: Path) -> None:

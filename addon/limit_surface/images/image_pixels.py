@@ -245,8 +245,9 @@ def save_tiles(
 
 
 def attach(image: bpy.types.Image, path: str | Path) -> None:
-    """Makes a file the image's own, with the image's color space. <UDIM> in the path stands for the
-    tile of an image without tiles, too.
+    """Makes a file the image's own, with the image's color space. The path may begin with //, which
+    is the folder of the .blend file. <UDIM> in the path stands for the tile of an image without
+    tiles, too.
     """
     colorspace = image.colorspace_settings.name
     if image.packed_files:
@@ -265,7 +266,9 @@ def of_tile(path: str | Path, tile: int) -> str:
 
 
 def load(path: str | Path, tiles: list[int]) -> bpy.types.Image:
-    """Loads an image from files that hold data; with <UDIM> in the path it is a tiled image."""
+    """Loads an image from files that hold data; with <UDIM> in the path it is a tiled image. The
+    path may begin with //, which is the folder of the .blend file.
+    """
     if "<UDIM>" in str(path):
         image = image_tiles.opened(str(path), tiles[0])
     else:
