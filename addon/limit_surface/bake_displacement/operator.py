@@ -103,7 +103,7 @@ class OBJECT_OT_limit_bake_displacement(
             if unseen:
                 self.report({"WARNING"}, unseen)
             self._warn_of_tangents(ob, map_name, request)
-        for warning in filter(None, (self._outside(request), told, image_pixels.unsaved(image))):
+        for warning in filter(None, (self._outside(request), *told, image_pixels.unsaved(image))):
             self.report({"WARNING"}, warning)
         self._tell(ob, image, request, measured)
         return {"FINISHED"}

@@ -29,13 +29,14 @@ class Output:
             self._check_path(self.path.absolute)
         self._target.check(self.tiles)
 
-    def put(self, pixels: dict[int, np.ndarray]) -> tuple[bpy.types.Image, str]:
-        """Returns the image with these pixels, and a warning about it. Where it cannot be saved, it
+    def put(self, pixels: dict[int, np.ndarray]) -> tuple[bpy.types.Image, list[str]]:
+        """Returns the image with these pixels, and warnings about it. Where it cannot be saved, it
         is not made or changed, and RefusalError is raised.
         """
-        tiles = list(pixels)
-        image = baked_images.put({self.name: self._target}, {self.name: pixels})[self.name]
-        return image, baked_images.kept_tiles(image, tiles)
+        tiles, target = list(pixels), self._target
+        packed = baked_images.packed_instead(target)
+        image = baked_images.put({self.name: target}, {self.name: pixels})[self.name]
+        return image, [packed, baked_images.kept_tiles(image, tiles)]
 
     @property
     def _target(self) -> Target:
@@ -43,6 +44,7 @@ class Output:
             name=self.name,
             size=self.size,
             kind=EXR_32,
+            has_formats=False,
             path=self.path,
             has_alpha=False,
             reuse=self.reuse,

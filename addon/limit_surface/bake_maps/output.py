@@ -34,8 +34,10 @@ class Output:
     ) -> tuple[list[bpy.types.Image], list[str]]:
         """Returns the images, and warnings about them. Moves the pixels out of `baked`."""
         tiles = {name: list(of) for name, of in baked.items()}
-        made = baked_images.put({name: self._target(name, of) for name, of in tiles.items()}, baked)
-        warnings = [baked_images.kept_tiles(image, tiles[name]) for name, image in made.items()]
+        targets = {name: self._target(name, of) for name, of in tiles.items()}
+        warnings = [baked_images.packed_instead(target) for target in targets.values()]
+        made = baked_images.put(targets, baked)
+        warnings += [baked_images.kept_tiles(image, tiles[name]) for name, image in made.items()]
         return list(made.values()), list(filter(None, warnings))
 
     def _target(self, map_name: str, tiles: Collection[int]) -> Target:
@@ -43,6 +45,7 @@ class Output:
             name=image_names.with_ending(self.name, f" {KINDS[map_name].name}"),
             size=self.size,
             kind=self.kind,
+            has_formats=True,
             path=None,
             has_alpha=True,
             reuse=self.reuse,

@@ -28,6 +28,7 @@ class Target:
     name: str
     size: tuple[int, int]
     kind: FileKind
+    has_formats: bool  # whether users can choose another kind
     path: GivenPath | None  # of its file, with <UDIM> where each tile has its own; None for no file
     has_alpha: bool
     reuse: bool  # whether an existing image of that name is written to
@@ -46,7 +47,12 @@ class Target:
         image = self.existing()
         if image:
             reused_images.check_fits(
-                image, tiles=tiles, size=self.size, is_float=self.is_float, option=self.option
+                image,
+                tiles=tiles,
+                size=self.size,
+                is_float=self.is_float,
+                has_formats=self.has_formats,
+                option=self.option,
             )
         if self.path:
             path = self.path.absolute
@@ -85,7 +91,8 @@ def put(
         for key, target in targets.items():
             pixels, image = baked.pop(key), existing[key]
             if image:
-                all_or_none.enter_context(image_pixels.written(image, pixels))
+                written = image_pixels.written(image, pixels, blank_is_float=target.is_float)
+                all_or_none.enter_context(written)
                 images[key] = image
             elif not target.path:
                 images[key] = all_or_none.enter_context(_made(target, pixels))
@@ -99,6 +106,19 @@ def put(
         if target.path and existing[key]:
             image_pixels.attach(images[key], target.path.stored)
     return {key: images[key] for key in targets}
+
+
+def packed_instead(target: Target) -> str:
+    """Returns a warning if the image that will be written to shows a missing file, and no other
+    file is given, or none. Call it before the image is written.
+    """
+    image = target.existing()
+    if image is None or target.path or image_tiles.has_pixels(image):
+        return ""
+    return (
+        f"the file of {image.name} is missing or cannot be read, so the .blend file now holds the "
+        "image"
+    )
 
 
 def kept_tiles(image: bpy.types.Image, baked: Collection[int]) -> str:

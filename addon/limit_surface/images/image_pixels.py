@@ -16,7 +16,7 @@ image without tiles counts as one tile 1001.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,9 +51,12 @@ class Description:
         return self.colorspace in ("Non-Color", "Raw", "Generic Data")
 
 
-def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Description:
+def checked(
+    image: bpy.types.Image | None, *, to_write: bool = False, replaced: Collection[int] = ()
+) -> Description:
     """Describes an image, whose file is read for this. Raises RefusalError where there are no
-    pixels, or they cannot be changed.
+    pixels, or they cannot be changed. An image without any pixels is accepted if its first tile is
+    one of those that will be replaced; it is described as one without tiles.
     """
     if image is None:
         raise RefusalError("No image is chosen")
@@ -65,14 +68,15 @@ def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Descrip
         raise RefusalError(f"{whose} has several layers, which is not supported")
     if to_write and not image.is_editable:
         raise RefusalError(f"{whose} is linked from another file and cannot be changed")
-    if not has_pixels:
+    is_replaced = min(image_tiles.without_pixels(image), default=0) in replaced
+    if not has_pixels and (image_tiles.has_pixels(image) or not is_replaced):
         raise RefusalError(f"{whose} has no pixels: check that its file exists")
-    tiles = {FIRST_TILE: tuple(image.size)}
+    tiles = {FIRST_TILE: tuple(image.size)} if has_pixels else {}
     if image.source == "TILED":
         if to_write:
             image_tiles.check_readable(image)  # what they showed is read, for undo
         tiles = image_tiles.sizes(image)
-    width, height = next(iter(tiles.values()))
+    width, height = next(iter(tiles.values()), (0, 0))
     return Description(
         image.name,
         width,
@@ -121,13 +125,22 @@ def write(
 
 
 @contextmanager
-def written(image: bpy.types.Image, pixels: Mapping[int, np.ndarray]) -> Iterator[None]:
+def written(
+    image: bpy.types.Image,
+    pixels: Mapping[int, np.ndarray],
+    *,
+    blank_is_float: bool | None = None,
+) -> Iterator[None]:
     """Writes the pixels of several tiles as `write` does, and takes the change back if an error
     follows within the `with` statement. So several images change together, or none does.
+
+    `blank_is_float` allows an image without any pixels, for example because its file is missing,
+    and tells which kind of pixels it gets. It is then packed, as there is no file.
     """
-    described = checked(image, to_write=True)
+    may_be_blank = blank_is_float is not None
+    described = checked(image, to_write=True, replaced=pixels.keys() if may_be_blank else ())
     _check_shapes(image, described, pixels)
-    is_kept = _is_kept(image, described)
+    is_kept = _is_kept(image, described) or (not described.tiles and image.source != "TILED")
     with (
         failed_writes.packing_restored(image, is_kept),
         pixel_undo.recorded(image) as tell,
@@ -135,7 +148,7 @@ def written(image: bpy.types.Image, pixels: Mapping[int, np.ndarray]) -> Iterato
     ):
         if is_kept:
             _read_back_unchanged(image)
-        image_tiles.write_some(image, pixels)
+        image_tiles.write_some(image, pixels, blank_is_float)
         if described.is_float and described.channels == 4 and image.source != "TILED":
             tell(pixels)  # the image holds just these numbers
         else:
@@ -149,7 +162,10 @@ def written(image: bpy.types.Image, pixels: Mapping[int, np.ndarray]) -> Iterato
 def _check_shapes(
     image: bpy.types.Image, described: Description, pixels: Mapping[int, np.ndarray]
 ) -> None:
+    blank = image_tiles.without_pixels(image)
     for number, values in pixels.items():
+        if number in blank:
+            continue
         if number not in described.tiles:
             raise RefusalError(f"The image {image.name} has no tile {number}")
         width, height = described.tiles[number]

@@ -27,6 +27,20 @@ def sizes(image: bpy.types.Image) -> dict[int, tuple[int, int]]:
     return {tile.number: tuple(tile.size) for tile in image.tiles if all(tile.size)}
 
 
+def has_pixels(image: bpy.types.Image) -> bool:
+    """Tells whether any tile of the image has pixels."""
+    return bool(sizes(image)) if image.source == "TILED" else len(image.pixels) > 0
+
+
+def without_pixels(image: bpy.types.Image) -> set[int]:
+    """Returns the numbers of the tiles that have no pixels, mostly because their files are
+    missing.
+    """
+    if image.source != "TILED":
+        return set() if len(image.pixels) else {FIRST_TILE}
+    return {tile.number for tile in image.tiles} - sizes(image).keys()
+
+
 def check_readable(image: bpy.types.Image) -> None:
     """Raises RefusalError where the tiles of a tiled image cannot be read."""
     whose = f"The tiled image {image.name}"
@@ -61,10 +75,18 @@ def read_all(image: bpy.types.Image) -> dict[int, np.ndarray]:
     return found
 
 
-def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
+def write_some(
+    image: bpy.types.Image, tiles: Mapping[int, np.ndarray], blank_is_float: bool | None = None
+) -> None:
     """Writes some tiles and leaves the others as they are. Nothing is stored for undo, which
-    image_pixels.write does.
+    image_pixels.write does. An image without any pixels becomes one with float or 8-bit pixels, as
+    `blank_is_float` says.
     """
+    is_float = image.is_float
+    if blank_is_float is not None and not has_pixels(image):
+        is_float = blank_is_float
+        if image.source != "TILED":
+            _become_generated(image, tiles[FIRST_TILE], is_float)
     # without this, a viewport that has nothing else to draw would go on showing the old pixels
     image.update_tag()
     if image.source != "TILED":
@@ -76,7 +98,7 @@ def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
     stay = sizes(image).keys() - tiles.keys()
     all_tiles = {**(read_all(image) if stay else {}), **tiles}
     path, colorspace = image.filepath_raw, image.colorspace_settings.name
-    with _saved(image.name, all_tiles, image.is_float) as files:
+    with _saved(image.name, all_tiles, is_float) as files:
         if image.packed_files:
             image.unpack(method="REMOVE")
         image.filepath = files
@@ -134,6 +156,15 @@ def _narrowed(pixels: np.ndarray, channels: int) -> np.ndarray:
     the first, and alpha from the last one.
     """
     return pixels[:, :, [0, 3]] if channels == 2 else pixels[:, :, :channels]
+
+
+def _become_generated(image: bpy.types.Image, pixels: np.ndarray, is_float: bool) -> None:
+    """Makes an image whose file is missing one that can hold these pixels."""
+    path = image.filepath_raw
+    image.source = "GENERATED"
+    image.filepath_raw = path  # Blender has dropped it
+    image.generated_height, image.generated_width, _ = pixels.shape
+    image.use_generated_float = is_float
 
 
 def _path_of_tile(image: bpy.types.Image, number: int) -> str:

@@ -58,6 +58,9 @@ class _Kept:
         return sum(file.stat().st_size for file in self.files.values() if file.exists())
 
     def show(self, image: bpy.types.Image) -> None:
+        if not self.files:  # there were no pixels, mostly because the image's file was missing
+            image.reload()
+            return
         tiles = {number: np.load(file) for number, file in self.files.items() if file.exists()}
         if tiles.keys() == self.files.keys():
             image_tiles.write_some(image, tiles)
@@ -93,7 +96,7 @@ def recorded(image: bpy.types.Image) -> Iterator[Callable[[Mapping[int, np.ndarr
     a function that stores the pixels of all tiles after the change, and has to be called.
     """
     mark, onto = uuid4().hex, image.get(ids.PIXELS_MARK)
-    now = image_tiles.read_all(image)
+    now = image_tiles.read_all(image) if image_tiles.has_pixels(image) else {}
     stored: list[_Kept] = []
     shown = _shown.get(image.session_uid)
     if shown and shown.kept and shown.kept.holds(now):

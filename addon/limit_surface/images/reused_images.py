@@ -22,32 +22,42 @@ def check_fits(
     tiles: Collection[int],
     size: tuple[int, int],
     is_float: bool,
+    has_formats: bool,
     option: str,
 ) -> None:
-    """Raises RefusalError where these tiles cannot be written into the image. `option` names the
-    property that, turned off, has a new image made.
+    """Raises RefusalError where these tiles cannot be written into the image. `has_formats` tells
+    whether users can choose another format, and `option` names the property that, turned off, has a
+    new image made.
     """
     whose = f"The existing image {image.name}"
-    described = image_pixels.checked(image, to_write=True)
-    missing = set(tiles) - described.tiles.keys()
+    otherwise = f"or another name, or turn {option} off"
+    try:
+        described = image_pixels.checked(image, to_write=True, replaced=tiles)
+    except RefusalError as error:
+        raise RefusalError(
+            f"{error}. You can also set another name, or turn {option} off"
+        ) from error
+    blank = image_tiles.without_pixels(image)  # these take any pixels
+    missing = set(tiles) - described.tiles.keys() - blank
     if missing:
         raise RefusalError(
             f"{whose} has no tile {min(missing)}: add the tile, set another name, or turn {option} "
             "off"
         )
-    for tile in tiles:
+    for tile in set(tiles) - blank:
         if described.tiles[tile] != size:
             width, height = described.tiles[tile]
-            raise RefusalError(
-                f"{whose} has {width} x {height} pixels: set this size or another name, or turn "
-                f"{option} off"
-            )
-    if described.is_float != is_float:
+            raise RefusalError(f"{whose} has {width} x {height} pixels: set this size {otherwise}")
+    if described.tiles and described.is_float != is_float:
         depth = "float" if described.is_float else "8-bit"
-        raise RefusalError(f"{whose} has {depth} pixels, which do not fit the chosen format")
+        raise RefusalError(
+            f"{whose} has {depth} pixels, which do not fit the {'chosen ' if has_formats else ''}"
+            f"format: set another {'format or ' if has_formats else ''}name, or turn {option} off"
+        )
     if not described.is_data:
         raise RefusalError(
-            f"{whose} has the color space {described.colorspace}, but data need Non-Color"
+            f"{whose} has the color space {described.colorspace}, but data need Non-Color: set "
+            f"this color space {otherwise}"
         )
 
 
