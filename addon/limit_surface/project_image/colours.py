@@ -15,6 +15,7 @@ import bpy
 import numpy as np
 from mathutils import Color
 
+from .. import native
 from ..errors import RefusalError
 from ..reading import srgb
 
@@ -33,10 +34,12 @@ class Encoding:
     is_curved: bool  # whether sRGB's curve is applied
     primaries: np.ndarray | None  # (3, 3) from Rec. 709 to the scene's; None where they are equal
     is_multiplied: bool  # whether colors are multiplied by alpha
-    has_alpha: bool
+    alpha_covers: bool  # otherwise alpha is unused, or data of its own
 
     def decoded(self, values: np.ndarray) -> np.ndarray:
-        """Converts the image's own values (..., 4), float32, to what shaders read."""
+        """Converts the image's own values (..., 4), float32, to what shaders read. Alpha is how
+        much the color covers.
+        """
         out = np.array(values, np.float32)
         if self.is_curved:
             out[..., :3] = srgb.to_linear(out[..., :3])
@@ -46,9 +49,18 @@ class Encoding:
             alpha = out[..., 3:]
             with _quietly():
                 out[..., :3] /= np.where(alpha > SMALLEST_ALPHA, alpha, 1)
-        if not self.has_alpha:
+        if not self.alpha_covers:
             out[..., 3] = 1
         return out
+
+    def painted(self, values: np.ndarray, colors: np.ndarray, weight: np.ndarray) -> np.ndarray:
+        """Returns the image's own values (n, 4) after these colors were laid over them. Alpha stays
+        as it is where it does not tell how much the color covers.
+        """
+        mixed = self.encoded(native.limitsurf.blend_over(self.decoded(values), colors, weight))
+        if not self.alpha_covers:
+            mixed[..., 3] = values[..., 3]
+        return mixed
 
     def encoded(self, values: np.ndarray) -> np.ndarray:
         """Converts what shaders read to the image's own values."""
@@ -63,23 +75,28 @@ class Encoding:
         return out
 
 
+def alpha_covers(image: bpy.types.Image) -> bool:
+    """Tells whether the image's alpha is how much its colors cover. Otherwise it is not used, or
+    channel-packed: data that have nothing to do with the colors.
+    """
+    return image.alpha_mode not in {"NONE", "CHANNEL_PACKED"}
+
+
 def of(image: bpy.types.Image) -> Encoding:
     """Returns the encoding of an image. Raises RefusalError where a byte image has a color space
     that only Blender itself can convert.
     """
-    space = image.colorspace_settings
-    has_alpha = image.alpha_mode != "NONE"
+    space, covers = image.colorspace_settings, alpha_covers(image)
     if image.is_float:
-        blended = image.alpha_mode in {"STRAIGHT", "PREMUL"}
-        return Encoding(False, None, blended and not space.is_data, has_alpha)
+        return Encoding(False, None, covers and not space.is_data, covers)
     if space.is_data:
-        return Encoding(False, None, False, has_alpha)
+        return Encoding(False, None, False, covers)
     if space.name not in {SRGB, LINEAR}:
         raise RefusalError(
             f"The 8-bit image {image.name} has the color space {space.name}: 8-bit images can be "
             f"projected or painted on only if their color space is {SRGB}, {LINEAR} or Non-Color"
         )
-    return Encoding(space.name == SRGB, _primaries(), False, has_alpha)
+    return Encoding(space.name == SRGB, _primaries(), False, covers)
 
 
 def of_new(is_float: bool) -> Encoding:

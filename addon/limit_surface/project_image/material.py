@@ -6,6 +6,7 @@ from typing import Any
 import bpy
 
 from ..images import material_slots
+from . import colours
 
 SHADER = "BSDF_PRINCIPLED"
 COLOR = "Base Color"
@@ -40,7 +41,8 @@ def for_decal(ob: bpy.types.Object, image: bpy.types.Image, uv_map: str) -> bpy.
     texture = _texture(material.node_tree, image, uv_map, shader.location.x)
     texture.extension = "EXTEND"
     links.new(texture.outputs["Color"], shader.inputs[COLOR])
-    links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
+    if colours.alpha_covers(image):
+        links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
     nodes.active = texture
     return material
 
@@ -81,7 +83,10 @@ def _link(material: bpy.types.Material, image: bpy.types.Image, uv_map: str) -> 
         sockets["A_Color"].default_value = base.default_value
     texture = _texture(tree, image, uv_map, x - 220)
     tree.links.new(texture.outputs["Color"], sockets["B_Color"])
-    tree.links.new(texture.outputs["Alpha"], sockets["Factor_Float"])
+    if colours.alpha_covers(image):
+        tree.links.new(texture.outputs["Alpha"], sockets["Factor_Float"])
+    else:
+        sockets["Factor_Float"].default_value = 1
     tree.links.new(sockets["Result_Color"], base)
     tree.nodes.active = texture
 

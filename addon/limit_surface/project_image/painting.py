@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import native
 from ..images import texel_places
 from ..tasks.job import Progress
 from .colours import Encoding
@@ -51,8 +50,7 @@ def paint(
         weight = (opacity * weight).clip(0, 1)  # rounding may have given slightly more than 1
         taken = weight * above[:, 3] > 0
         at = texels.y[rows][taken], texels.x[rows][taken]
-        below = canvas.encoding.decoded(canvas.pixels[at])
-        mixed = native.limitsurf.blend_over(below, above[taken], weight[taken])
-        canvas.pixels[at] = canvas.encoding.encoded(mixed)
+        below = canvas.pixels[at]
+        canvas.pixels[at] = canvas.encoding.painted(below, above[taken], weight[taken])
         painted[rows] = taken
     return painted
