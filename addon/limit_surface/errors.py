@@ -10,6 +10,10 @@ class CageError(RefusalError):
     """The object has no control mesh that can be evaluated."""
 
 
+class MultiresolutionError(CageError):
+    """The object has no control mesh because of a Multiresolution modifier."""
+
+
 class DisplayedError(RefusalError):
     """The polygons that Blender shows are not available, or are not those of the subdivided
     cage.

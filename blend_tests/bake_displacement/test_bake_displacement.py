@@ -204,6 +204,11 @@ def test_polygons_of_multiresolution(base):
             bpy.ops.object.multires_subdivide(modifier=multires.name)
     multires.levels = 2
     bpy.context.view_layer.update()
+    refused(
+        base,
+        f"{copy.name} has a Multiresolution modifier: set Sculpted Surface to Polygons",
+        target=copy.name,
+    )
     image = bake(base, copy, target_shape="POLYGONS", layout_kind="PTEX", face_resolution="4",
                  space="OBJECT")  # fmt: skip
     shown = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data

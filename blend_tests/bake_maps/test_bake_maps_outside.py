@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Maps of meshes whose UV map does not lie within the tiles that are baked."""
 
+import warnings
+
 import bpy
 import numpy as np
 import pytest
@@ -58,10 +60,22 @@ def test_rounding_at_a_border_makes_no_tile(mesh, capfd):
     assert "outside" not in capfd.readouterr().out
 
 
-@pytest.mark.parametrize("far", [1e30, np.inf])
+@pytest.mark.parametrize("far", [1e30, 3e38, np.inf])
 @pytest.mark.parametrize("tiles", ["FIRST", "ALL"])
 def test_a_map_that_reaches_too_far(mesh, far, tiles):
     mesh.data.uv_layers[0].data[3].uv = (far, 0)
-    with pytest.raises(RuntimeError, match="the UV map UVMap has coordinates up to"):
-        bake(tiles=tiles)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(RuntimeError, match="the UV map UVMap has coordinates up to"):
+            bake(tiles=tiles)
     assert not bpy.data.images
+
+
+def test_operators_that_read_such_a_map_warn_of_nothing(mesh):
+    mesh.data.uv_layers[0].data[3].uv = (3e38, -3e38)
+    mesh.data.uv_layers[0].data[4].uv = (-3e38, 3e38)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert bpy.ops.object.limit_hair_add(per_side=2) == {"FINISHED"}
+        bpy.context.view_layer.objects.active = mesh
+        assert bpy.ops.object.limit_mesh() == {"FINISHED"}

@@ -177,7 +177,7 @@ def test_one_side_only():
     ob = flat_square()
     frame = empty(location=(0.5, 0.5, -1), empty_display_size=0.5, rotation_euler=(np.pi, 0, 0))
     filled("Shown", noise((8, 8)))
-    refused(ob, "No part of the image Shown falls on", source="PLANAR", empty=frame.name)
+    refused(ob, "may face away from the empty", source="PLANAR", empty=frame.name)
 
 
 def test_depth_of_planar_projections():
@@ -474,7 +474,7 @@ def test_refusals_about_sources():
     refused(ob, "There is no empty 'Square'", source="BOX", empty="Square")
     refused(ob, "No mesh is chosen", source="NORMALS")
     camera = truth.add_camera((0.5, 0.5, -3), (0.5, 0.5, -9))
-    refused(ob, "No part of the image Shown falls on the surface's UV map")
+    refused(ob, "No part of the image Shown reaches the surface")
     refused(ob, "There is no mesh 'Camera'", source="NORMALS", from_object=camera.name)
     refused(ob, "first angle of Facing is larger", facing=(1.5, 1.0))
 

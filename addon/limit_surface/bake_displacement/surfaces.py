@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..errors import RefusalError
+from ..errors import MultiresolutionError, RefusalError
 from ..images import texel_places
 from ..reading import attributes, cage, transform
 from ..reading.named import find_object
@@ -47,7 +47,13 @@ def read(
     base = _surface(found.mesh, ob.name)
     uv_data = texel_places.uv_data(base, found, ob.name) if needs_map else None
     if properties.target_shape == "LIMIT":
-        found_target = cage.read(target, depsgraph)
+        try:
+            found_target = cage.read(target, depsgraph)
+        except MultiresolutionError as error:
+            # Applied, it leaves polygons on the limit surface, which must not be smoothed again.
+            raise RefusalError(
+                f"{target.name} has a Multiresolution modifier: set Sculpted Surface to Polygons"
+            ) from error
         mesh, matrix = found_target.mesh, found_target.matrix
     else:
         mesh, matrix = _polygons(target, depsgraph)

@@ -81,7 +81,7 @@ def source(
     )
     # Where the frame cuts the image off, its pixels must not fade before the frame.
     extension = "EXTEND" if is_framed else properties.extension
-    return FromProjector(world, found, _filtered(shown, extension), seen)
+    return FromProjector(world, found, _filtered(shown, extension), seen, _unreached(properties))
 
 
 def facing(properties: bpy.types.OperatorProperties) -> tuple[float, float]:
@@ -89,6 +89,31 @@ def facing(properties: bpy.types.OperatorProperties) -> tuple[float, float]:
     if not start <= end:
         raise RefusalError("The first angle of Facing is larger than the second")
     return start, end
+
+
+def _unreached(properties: bpy.types.OperatorProperties) -> str:
+    """Returns why no part of the image may reach the surface, as far as the choices allow it."""
+    whose = {"CAMERA": "the camera", "VIEW": "the 3D view", "PLANAR": "the empty"}
+    whom, is_framed = whose[properties.source], properties.extension == "CLIP"
+    found = []
+    if not properties.two_sided:
+        found.append(f"face away from {whom}")
+    if properties.facing[1] < np.pi / 2:
+        found.append("be turned away by more than Facing allows")
+    if properties.source != "PLANAR":
+        found.append(
+            f"lie outside {whom}'s picture"
+            if is_framed
+            else f"lie behind {whom} or outside its clipping range"
+        )
+    elif is_framed or properties.use_depth:
+        ends = [*["the empty's rectangle"] * is_framed, *["the depths"] * properties.use_depth]
+        found.append(f"lie outside {' or '.join(ends)}")
+    if properties.occlusion:
+        found.append("be hidden behind other parts of itself")
+    if len(found) > 1:
+        found = [", ".join(found[:-1]), found[-1]]
+    return f"the surface may {' or '.join(found)}" if found else ""
 
 
 def _filtered(shown: bpy.types.Image, extension: str) -> limitsurf.FilteredImage:
@@ -112,4 +137,5 @@ def _along_normals(
     carrier_map = texel_places.uv_data(carrier.surface, found, ob.name)
     reach = properties.max_distance or np.inf
     pixels = _filtered(shown, properties.extension)
-    return AlongNormals(world, carrier, carrier_map, pixels, reach, properties.direction.lower())
+    direction = properties.direction.lower()
+    return AlongNormals(world, carrier, carrier_map, pixels, reach, direction, ob.name)

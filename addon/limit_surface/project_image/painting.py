@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,11 @@ class Canvas:
         return 1 / self.size[0], 1 / self.size[1]
 
 
+class Painted(NamedTuple):
+    texels: np.ndarray  # whether each of the texels was painted
+    is_reached: bool  # whether the image falls on any texel inside islands, with any color
+
+
 def paint(
     canvas: Canvas,
     texels: limitsurf.Texels,
@@ -41,9 +46,9 @@ def paint(
     source: Source,
     opacity: float,
     progress: Progress,
-) -> np.ndarray:
-    """Returns which of the texels were painted. All others keep their values to the last bit."""
-    painted = np.zeros(len(texels.face), bool)
+) -> Painted:
+    """Paints texels. All others keep their values to the last bit."""
+    painted, is_reached = np.zeros(len(texels.face), bool), False
     whole = Places(uv_map, texels.face, texels.uv, canvas.texel)
     for rows in texel_places.parts(len(texels.face), progress):
         above, weight = source.look(whole.take(rows))
@@ -53,4 +58,5 @@ def paint(
         below = canvas.pixels[at]
         canvas.pixels[at] = canvas.encoding.painted(below, above[taken], weight[taken])
         painted[rows] = taken
-    return painted
+        is_reached |= bool((weight > 0)[texels.inside[rows]].any())
+    return Painted(painted, is_reached)

@@ -33,6 +33,10 @@ class Places:
 
 
 class Source(Protocol):
+    @property
+    def unreached(self) -> str:
+        """The reasons for which no part of the image may reach the surface, or none."""
+
     def check(self) -> None:
         """Raises RefusalError where the inputs make a projection impossible."""
 
@@ -58,6 +62,7 @@ class FromProjector:
     projector: Projector
     image: limitsurf.FilteredImage
     seen: Seen
+    unreached: str
 
     def check(self) -> None:
         self.world.check_eye(self.projector)
@@ -90,6 +95,10 @@ class FromBox:
     image: limitsurf.FilteredImage
     blend: float
     is_framed: bool
+
+    @property
+    def unreached(self) -> str:
+        return "the surface may lie outside the empty's box" if self.is_framed else ""
 
     def check(self) -> None:
         pass
@@ -140,6 +149,14 @@ class AlongNormals:
     image: limitsurf.FilteredImage
     max_distance: float
     direction: Literal["both", "outward", "inward"]
+    carrier_name: str
+
+    @property
+    def unreached(self) -> str:
+        where = " in the chosen direction" if self.direction != "both" else ""
+        near = " within the chosen distance" if np.isfinite(self.max_distance) else ""
+        both = " and" if where and near else ""
+        return f"no normal of the surface meets {self.carrier_name}{where}{both}{near}"
 
     def check(self) -> None:
         pass

@@ -58,7 +58,7 @@ class Order:
     def work(self, progress: Progress) -> Made:
         self.source.check()
         count, overlapping, whole = 0, 0, len(self.canvases)
-        covered, painted = False, []
+        is_covered, is_reached, changed = False, False, []
         for i, (tile, canvas) in enumerate(self.canvases.items()):
             part = part_of(progress, i / whole, (i + 1) / whole)
             texels = texel_places.texels(
@@ -71,21 +71,29 @@ class Order:
             )
             if not texels.inside.any():
                 continue
-            covered = True
+            is_covered = True
             overlapping += overlap.overlapping(texels)
             painting = part_of(part, MAPPED, 1)
-            taken = paint(canvas, texels, self.uv_map, self.source, self.opacity, painting)
-            count += int(np.count_nonzero(taken & texels.inside))
-            if taken.any():
-                painted.append(tile)
-        if not covered:
+            painted = paint(canvas, texels, self.uv_map, self.source, self.opacity, painting)
+            count += int(np.count_nonzero(painted.texels & texels.inside))
+            is_reached |= painted.is_reached
+            if painted.texels.any():
+                changed.append(tile)
+        if not is_covered:
             raise uv_tiles.no_texels(
                 self.canvases, "paint into an image that has the tiles of its islands"
             )
         if not count:
-            raise RefusalError(f"No part of the image {self.image} falls on the surface's UV map")
+            raise RefusalError(self._nothing(is_reached))
         warnings = [overlap.told(overlapping) if overlapping else "", self._outside()]
-        return Made(self, count, tuple(painted), warnings)
+        return Made(self, count, tuple(changed), warnings)
+
+    def _nothing(self, is_reached: bool) -> str:
+        """Returns the reason why nothing was painted."""
+        if is_reached:
+            return f"The image {self.image} is transparent where it falls on the surface"
+        reasons = f": {self.source.unreached}" if self.source.unreached else ""
+        return f"No part of the image {self.image} reaches the surface{reasons}"
 
     def _outside(self) -> str:
         """Returns a warning about the faces outside the image's tiles, or none."""

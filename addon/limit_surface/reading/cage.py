@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..errors import CageError
+from ..errors import CageError, MultiresolutionError
 from . import (
     animated_values,
     attributes,
@@ -278,7 +278,7 @@ def check_modifiers(ob: bpy.types.Object, cut: int, shown: str = "show_viewport"
         if not getattr(modifier, shown):
             continue
         if modifier.type == "MULTIRES":
-            raise CageError(
+            raise MultiresolutionError(
                 f"{ob.name}: Multiresolution ({modifier.name}) is not supported: apply it or "
                 "disable it"
             )

@@ -41,7 +41,8 @@ def read(mesh: bpy.types.Mesh, name: str) -> UvMap:
     uv = attributes.read(mesh, name)
     corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)
     face_sizes = attributes.face_sizes(mesh)
-    leader = _leaders(uv, corner_vertex, np.repeat(_is_mirrored(uv, face_sizes), face_sizes))
+    with np.errstate(over="ignore", invalid="ignore"):  # users may have moved corners anywhere
+        leader = _leaders(uv, corner_vertex, np.repeat(_is_mirrored(uv, face_sizes), face_sizes))
     leads = leader == np.arange(len(uv))
     return UvMap(name, uv[leads].astype(np.float64), (np.cumsum(leads) - 1)[leader])
 
