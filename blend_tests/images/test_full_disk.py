@@ -57,6 +57,17 @@ def test_an_image_that_cannot_be_stored_for_undo(tiles, is_float):
         np.testing.assert_array_equal(values, before[tile])
 
 
+@pytest.mark.parametrize("is_float", [False, True])
+def test_new_tiles_that_cannot_be_stored(is_float):
+    tiles, left = {1001: pixels(1), 1002: pixels(2)}, temporary_files()
+    with full_disk(), pytest.raises(RefusalError) as refusal:
+        image_pixels.new_tiled("Image", tiles, is_float=is_float, is_data=True)
+    assert str(refusal.value).startswith(bpy.app.tempdir)
+    assert len(str(refusal.value).splitlines()) == 1
+    assert temporary_files() == left
+    assert not bpy.data.images
+
+
 def test_an_operator_says_it_in_one_sentence(tmp_path):
     scenes.add_uv_map(scenes.grid_with_holes(), lambda at: 0.1 + 0.8 * at[:, :2] / (5, 4))
     how = {"maps": {"POSITION"}, "width": SIDE, "height": SIDE}

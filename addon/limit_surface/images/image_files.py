@@ -59,7 +59,9 @@ def save_copy(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
         with _scene_that_saves(kind, image.colorspace_settings.name) as scene:
             image.save_render(str(path), scene=scene)
     except RuntimeError as error:
-        raise RefusalError(f"{path} cannot be written: {str(error).strip()}") from error
+        # the first line has the reason; others repeat the path, and the name of a private image
+        reason = str(error).strip().partition("\n")[0].removeprefix("Error: ")
+        raise RefusalError(f"{path} cannot be written: {reason}") from error
     if kind.file_format == "PNG" and not _is_whole_png(path):
         raise RefusalError(f"{path} was not written completely: the disk may be full")
 

@@ -68,8 +68,7 @@ def checked(
         raise RefusalError(f"{whose} has several layers, which is not supported")
     if to_write and not image.is_editable:
         raise RefusalError(f"{whose} is linked from another file and cannot be changed")
-    is_replaced = min(image_tiles.without_pixels(image), default=0) in replaced
-    if not has_pixels and (image_tiles.has_pixels(image) or not is_replaced):
+    if not has_pixels and not _may_be_made_anew(image, replaced):
         raise RefusalError(f"{whose} has no pixels: check that its file exists")
     tiles = {FIRST_TILE: tuple(image.size)} if has_pixels else {}
     if image.source == "TILED":
@@ -86,6 +85,13 @@ def checked(
         image.colorspace_settings.name,
         tiles,
     )
+
+
+def _may_be_made_anew(image: bpy.types.Image, replaced: Collection[int]) -> bool:
+    """Tells whether an image whose first tile has no pixels can be given pixels of any kind, as
+    nothing else of it is kept.
+    """
+    return not image_tiles.has_pixels(image) and min(image_tiles.without_pixels(image)) in replaced
 
 
 def read(image: bpy.types.Image, tile: int = FIRST_TILE) -> np.ndarray:
