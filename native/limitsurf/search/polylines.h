@@ -38,7 +38,7 @@ void forEachLine(const Polylines& curves, const Body& body) {
 }
 
 /// Curves are divided into at most so many pieces.
-constexpr std::int64_t kMostPieces = 10'000'000;
+constexpr std::int64_t kMostPieces = 30'000'000;
 
 /// The least number of equal pieces of a line, none longer than `spacing`: 1 to kMostPieces + 1.
 std::int64_t piecesOfLine(const Vector3& from, const Vector3& to, double spacing);

@@ -80,8 +80,8 @@ def test_progress_reaches_1_and_may_end_the_call(surface, at):
         (
             [[0, 0, 0], [1, 1, 0], [1e9, 1, 0]],
             None,
-            r"^points: the curves would be divided into more than 10000000 pieces, .*"
-            r"\(1e\+09, 1, 0\) is 999999999 long$",
+            r"^points: the curves would be divided into more than 30000000 pieces, .*"
+            r"\(1000000000, 1, 0\) is 999999999 long$",
         ),
     ],
 )
