@@ -13,6 +13,7 @@
 #include "limitsurf/flow/block_equations.h"
 #include "limitsurf/flow/flow_mesh.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/search/line_pieces.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/work_aside.h"

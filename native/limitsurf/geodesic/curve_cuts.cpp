@@ -9,6 +9,7 @@
 #include "limitsurf/geodesic/triangle_cutter.h"
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/own_unit.h"
+#include "limitsurf/search/line_pieces.h"
 #include "limitsurf/search/surface_search.h"
 
 namespace limitsurf {

@@ -57,7 +57,8 @@ struct GuideOptions {
 /// Properties: any number of threads gives the same bits; a row does not depend on the others.
 ///
 /// Throws std::invalid_argument for a count out of range, for offsets of curves that are not those
-/// of Polylines, and naming the first point of them that is not finite; MeshError for cuts that are
+/// of Polylines, naming the first point of them that is not finite, and for curves of more than 30
+/// million pieces as long as half a triangle's side; MeshError for cuts that are
 /// no edges, and as evaluate() does for locations. Cost: about 1 microsecond for each vertex of
 /// the triangles and each guide that it keeps (five more than `count`, and more where triangles
 /// are long), on one core; a microsecond a place, on all cores. The triangles have 16,000 to 64,000

@@ -54,7 +54,8 @@ distances in the world, pose the surface there. The result has the same bits for
 
 Raises LocationError and MeshError as evaluate() does, MeshError for cuts that are no edges of the mesh,
 naming the row, and ValueError for a count out of range, for points and offsets of curves of other shapes,
-for offsets that do not begin with 0, decrease, or do not end with p, and for a point that is not finite.
+for offsets that do not begin with 0, decrease, or do not end with p, for a point that is not finite, and
+for curves that are more than 30 million times as long as half a side of the triangles.
 Cost for a mesh of 10,000 faces and 1,000 guides:
 some seconds, and a microsecond for each place. Memory: 24 bytes for each of some 160,000 vertices and
 count + 5, and 20 for each guide of a place.)";
