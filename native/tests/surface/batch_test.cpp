@@ -341,7 +341,7 @@ TEST(CheckPositions, FindsOneBadNumberAmongManyAndNamesTheFirstRow) {
           checkPositions(bad, kRows, threads);
           ADD_FAILURE() << row << ", " << value;
         } catch (const MeshError& error) {
-          const std::string begin = "vertex " + std::to_string(row) + " ";
+          const std::string begin = "positions: vertex " + std::to_string(row) + " ";
           EXPECT_EQ(std::string(error.what()).substr(0, begin.size()), begin) << value;
         }
       }
