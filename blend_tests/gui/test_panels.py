@@ -4,7 +4,7 @@
 import pytest
 from session import ROW, wait_until
 
-DRAW = "view3d.limit_draw"  # the last button above the panels Hair and Points
+DRAW = "view3d.limit_draw"  # the last button above the panels Hair, Points and Draw
 HEADER = 1.4 * ROW  # from one closed panel to the next
 SOON = 100  # rounds of the main loop, at least 0.5 s
 LONG = 400  # and at least 2 s
@@ -19,6 +19,10 @@ def open_points(blender):
     open_hair(blender, below=HEADER)
 
 
+def open_draw(blender):
+    open_hair(blender, 2 * HEADER)
+
+
 def open_follow(blender):
     blender.open_panel("VIEW3D_PT_limit_follow")
 
@@ -28,6 +32,7 @@ def open_follow(blender):
     [
         ("VIEW3D_PT_limit_hair", open_hair),
         ("VIEW3D_PT_limit_points", open_points),
+        ("VIEW3D_PT_limit_draw", open_draw),
         ("VIEW3D_PT_limit_follow", open_follow),
     ],
 )
