@@ -36,7 +36,8 @@ PARTS = {
     "rest rotations": (binding.Binding, "fill"),
     "strands": (strands.StrandMaker, "put"),
     "writing": (new_hair, "add"),
-    "Blender's update": (new_hair, "add_on_surface"),
+    "putting": (scatter_operator.ScatterOperator, "_put"),
+    "Blender's update": (scatter_operator.ScatterOperator, "finish"),
 }
 
 
@@ -59,9 +60,11 @@ class Split:
         return timed
 
     def taken(self) -> dict[str, float]:
-        """Returns the seconds since the last time. Writing includes the update."""
+        """Returns the seconds since the last time. Blender's update comes after what is put into
+        the file, which is mostly writing.
+        """
         seconds = dict(self.seconds)
-        seconds["writing"] -= seconds["Blender's update"]
+        seconds["Blender's update"] -= seconds.pop("putting")
         self.seconds = dict.fromkeys(PARTS, 0.0)
         return seconds
 
