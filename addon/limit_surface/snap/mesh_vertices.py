@@ -8,12 +8,12 @@ keys change as they do when Blender itself leaves that mode.
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import bmesh
 import bpy
 import numpy as np
 
 from .. import ids
 from ..reading import attributes
+from ..reading.edited_mesh import as_edited
 from .element_points import SnappedPoints
 
 _SELECTED, _HIDDEN = ".select_vert", ".hide_vert"
@@ -23,7 +23,6 @@ class SnappedVertices(SnappedPoints):
     noun = "vertices"
 
     def read(self) -> tuple[np.ndarray, np.ndarray]:
-        # Attributes are read many times faster than the properties of single vertices.
         with as_edited(self.ob.data) as mesh:
             points = attributes.read(mesh, ids.POSITION)
             selected, hidden = (_flags(mesh, name) for name in (_SELECTED, _HIDDEN))
@@ -101,17 +100,6 @@ def _dependent(
         found += relative
         pending += relative
     return found
-
-
-@contextmanager
-def as_edited(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Mesh]:
-    """Yields a copy of a mesh in its Edit Mode state, whose arrays can be read."""
-    copy = bpy.data.meshes.new("Edited")
-    try:
-        bmesh.from_edit_mesh(mesh).to_mesh(copy)
-        yield copy
-    finally:
-        bpy.data.meshes.remove(copy)
 
 
 @contextmanager

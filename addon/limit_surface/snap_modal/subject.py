@@ -11,7 +11,7 @@ from ..errors import RefusalError
 from ..placing.followers import has_own_places
 from ..placing.posed_surface import transformed
 from ..placing.present_shape import PresentShape
-from ..snap.mesh_vertices import as_edited
+from ..reading.edited_mesh import as_edited
 from ..snap.selection import OWN_PLACES, ancestors
 from ..snap.surface import TargetSurface
 from ..tasks.editable import check_data_editable

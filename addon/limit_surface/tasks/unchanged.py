@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..reading import attributes, splines
+from ..reading.edited_mesh import as_edited
 from .object_keys import ObjectKey
 
 AGAIN = "run the operator again"
@@ -127,8 +128,8 @@ def _shape_of(ob: bpy.types.Object) -> int:
     if ob.type in ("CURVE", "SURFACE"):
         return zlib.crc32(splines.positions(ob.data).tobytes())
     if ob.type == "MESH" and ob.data.is_editmode:
-        edited = bmesh.from_edit_mesh(ob.data)
-        return zlib.crc32(np.array([vertex.co for vertex in edited.verts]).tobytes())
+        with as_edited(ob.data) as mesh:
+            return _sum_of(mesh, "position")
     return _sum_of(ob.data, "position")
 
 
