@@ -219,6 +219,15 @@ def tracing() -> Iterator[tuple[str, Call]]:
     guides, at = places("middle", 1000), places("middle", 500_000)
     yield "guide_weights", lambda: middle.guide_weights(*guides, *at)
     yield "curve_directions", lambda: middle.curve_directions(line, None, *at)
+    begins = rng.random((500_000, 1, 3)) * [299, 299, 0]
+    short = (begins + [[0, 0, 0], [0.5, 0.5, 0]]).reshape(-1, 3)
+    ends = np.arange(0, len(short) + 1, 2)
+    cut_by = {"cut_points": short[:200_000], "cut_offsets": ends[:100_001]}
+    yield "guide_weights, 100,000 curves", lambda: middle.guide_weights(*guides, *at, **cut_by)
+    yield (
+        "curve_directions, 500,000 curves",
+        lambda: middle.curve_directions(short, ends, *at),
+    )
     yield "lay_path", lambda: middle.lay_path(line, 1e-6)
     path = middle.lay_path(line, 1e-3)
     some = (path.face, path.uv)
@@ -228,6 +237,7 @@ def tracing() -> Iterator[tuple[str, Call]]:
         lambda: middle.smooth_path(*some, np.ones(len(path.face)), iterations=200),
     )
     yield "even_path", lambda: middle.even_path(*some, 200_000)
+    yield "even_path, 10 million", lambda: middle.even_path(*some, 10_000_000)
     points = rng.random((8_000_000, 3))
     offsets = np.arange(0, len(points) + 1, 8)
     yield "resample_strands", lambda: ls.resample_strands(points, offsets, 16)
