@@ -34,6 +34,17 @@ void reallocate(std::vector<T>& values, std::size_t capacity) {
   values.swap(other);
 }
 
+/// Adds values that T() makes to the end of a vector, until it has `count`. Can be interrupted.
+template <typename T>
+void resizeInParts(std::vector<T>& values, std::size_t count) {
+  constexpr std::size_t kPart = std::size_t{1} << 16;
+  values.reserve(count);
+  while (values.size() < count) {
+    values.resize(std::min(values.size() + kPart, count));
+    InterruptionPoint::pass();
+  }
+}
+
 /// Makes room for `count` more values, and twice as much where the vector must move. Can be
 /// interrupted.
 template <typename T>

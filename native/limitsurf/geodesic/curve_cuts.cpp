@@ -146,6 +146,7 @@ void cutInUnit(SurfaceTriangles& triangles, double unit, const LimitSurface& sur
       cutter.connect(ends[curve].last_but_one, last);
     }
   }
+  cutter.release();
 }
 
 }  // namespace

@@ -189,8 +189,10 @@ void GeodesicMesh::listNeighbors() {
   struct Corner {
     int triangle, k;
   };
+  InterruptionStride stride;
   std::vector<int> end(triangles_.points.size() + 1, 0);
   for (const FlatTriangle& triangle : flipped) {
+    stride.step();
     for (const int vertex : triangle.vertices) {
       ++end[vertex + 1];
     }
@@ -198,6 +200,7 @@ void GeodesicMesh::listNeighbors() {
   std::partial_sum(end.begin(), end.end(), end.begin());
   std::vector<Corner> corners(3 * flipped.size());
   for (std::size_t number = 0; number < flipped.size(); ++number) {
+    stride.step();
     for (int k = 0; k < 3; ++k) {
       corners[end[flipped[number].vertices[k]]++] = {static_cast<int>(number), k};
     }
@@ -208,7 +211,6 @@ void GeodesicMesh::listNeighbors() {
   first_neighbor_.reserve(triangles_.points.size() + 1);
   neighbors_.reserve(around_.size() + around_.size() / 8 + corners.size());
   first_neighbor_.push_back(0);
-  InterruptionStride stride;
   for (int vertex = 0; vertex < vertexCount(); ++vertex) {
     stride.step();
     const auto first = static_cast<std::size_t>(first_neighbor_.back());

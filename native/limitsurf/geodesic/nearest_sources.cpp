@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "limitsurf/geodesic/unfolding.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -26,8 +27,9 @@ double replaceable(double distance, int times) {
   const int more = std::max(0, times - kUsualTimes);
   return distance * (1 - std::min(1., std::ldexp(kLeastShortening, more)));
 }
-/// The number of steps between two reports of progress.
-constexpr std::size_t kStepsPerReport = std::size_t{1} << 16;
+/// The number of steps, which take some microseconds each, between two interruption points, and
+/// between two reports of progress.
+constexpr std::size_t kStepsPerPass = std::size_t{1} << 12, kStepsPerReport = std::size_t{1} << 16;
 
 }  // namespace
 
@@ -47,7 +49,7 @@ NearestSources::NearestSources(const GeodesicMesh& mesh, const std::vector<MeshP
   for (std::size_t vertex = 0; vertex < most.size(); ++vertex) {
     first_[vertex + 1] = first_[vertex] + 2 * static_cast<std::size_t>(most[vertex]);
   }
-  entries_.resize(first_.back());
+  resizeInParts(entries_, first_.back());
   for (std::size_t source = 0; source < sources.size(); ++source) {
     for (const int vertex : mesh.triangle(sources[source].triangle)) {
       offer(vertex, static_cast<int>(source),
@@ -101,6 +103,7 @@ void NearestSources::offer(int vertex, int source, double distance, Entry* entry
   } else {
     return;
   }
+  reserveMore(heap_, 1);
   heap_.push_back({distance, vertex, source});
   std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
 }
@@ -140,11 +143,11 @@ void NearestSources::spread(const Progress& progress) {
   }
   std::size_t steps = 0, accepted = 0;
   while (!heap_.empty()) {
-    if (++steps % kStepsPerReport == 0) {
+    if (++steps % kStepsPerPass == 0) {
       InterruptionPoint::pass();
-      if (progress) {
-        progress(std::min(1., static_cast<double>(accepted) / all));
-      }
+    }
+    if (progress && steps % kStepsPerReport == 0) {
+      progress(std::min(1., static_cast<double>(accepted) / all));
     }
     const Waiting next = heap_.front();
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());

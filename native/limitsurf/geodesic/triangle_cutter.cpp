@@ -172,6 +172,18 @@ int TriangleCutter::splitTriangle(int triangle, const std::array<double, 3>& wei
   return point;
 }
 
+void TriangleCutter::release() {
+  InterruptionStride stride;
+  for (std::vector<int>& triangles : around_) {
+    stride.step();
+    triangles = {};
+  }
+  while (!pieces_.empty()) {
+    stride.step();
+    pieces_.erase(pieces_.begin());
+  }
+}
+
 double TriangleCutter::distance(int a, int b) const {
   return (triangles_.points[a] - triangles_.points[b]).norm();
 }

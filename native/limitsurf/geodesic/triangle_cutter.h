@@ -26,6 +26,10 @@ class TriangleCutter {
   /// cut; where there is none either, nothing more. Does nothing from or to the point -1.
   void connect(int from, int to);
 
+  /// Frees the memory, which can be interrupted, other than by the destructor. Nothing can be cut
+  /// afterwards.
+  void release();
+
  private:
   struct Crossing {
     int a, b;      // the points of the side that is crossed
