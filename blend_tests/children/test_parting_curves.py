@@ -56,6 +56,13 @@ def test_curves_of_all_types_part(make):
     check_parted(add_children(guides, parting="CURVES", parting_curves=curve.name, count=1000))
 
 
+def test_partings_of_billions_of_faces_are_refused():
+    guides = two_sided(sheet())
+    curve = add_curve([(2, -0.2, 0), (2, 1e9, 0)])
+    with pytest.raises(RuntimeError, match="The partings are too long for .*, whose faces are"):
+        add_children(guides, parting="CURVES", parting_curves=curve.name, count=1000)
+
+
 def test_curves_part_live_children():
     guides = two_sided(sheet())
     curve = add_curve(ACROSS)

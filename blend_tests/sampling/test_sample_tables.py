@@ -353,3 +353,15 @@ def test_tables_that_have_lost_their_modifier_are_no_leftovers():
     scenes.activate(scenes.cross())
     bpy.ops.object.limit_sample_tables(depth=4)
     assert table.name == f"{ids.ALL_TILES_TABLE} of Holes"
+
+
+def test_tables_that_would_be_too_large_are_refused():
+    around = np.linspace(0, 2 * np.pi, 700, endpoint=False)
+    ob = scenes.add_mesh("Disc", [(np.cos(a), np.sin(a), 0) for a in around], [range(700)])
+    scenes.activate(ob)
+    before = set(bpy.data.objects)
+    with pytest.raises(
+        RuntimeError, match="The tables of Disc would take more than 3 GB, .* sides"
+    ):
+        bpy.ops.object.limit_sample_tables(depth=24)
+    assert set(bpy.data.objects) == before

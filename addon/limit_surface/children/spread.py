@@ -47,15 +47,22 @@ class Spread:
         found = self.distribution.scatter(region, part_of(progress, 0, _SCATTERED))
         at, guides = found.locations, self.guides.at
         # distances are measured in the world, and may lead over faces that are not covered
-        near = region.cage.surface(in_world=True).guide_weights(
-            guides.face,
-            guides.uv,
-            at.face,
-            at.uv,
-            self.count,
-            **region.sources["parting"]._asdict(),
-            progress=part_of(progress, _SCATTERED, 1),
-        )
+        surface = region.cage.surface(in_world=True)
+        try:
+            near = surface.guide_weights(
+                guides.face,
+                guides.uv,
+                at.face,
+                at.uv,
+                self.count,
+                **region.sources["parting"]._asdict(),
+                progress=part_of(progress, _SCATTERED, 1),
+            )
+        except ValueError as error:  # the partings have been read as finite curves
+            raise RefusalError(
+                f"The partings are too long for {region.cage.name}, whose faces are millions of "
+                "times smaller"
+            ) from error
         reached = near.guide[:, 0] >= 0
         if len(at) and not reached.any():
             raise RefusalError(

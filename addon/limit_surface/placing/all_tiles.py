@@ -46,7 +46,14 @@ class AllTiles:
     def compute(self, progress: Progress) -> None:
         """Finds the tiles, which takes 30 to 65 microseconds of one core for each of them."""
         limit = self._limit
-        self.tree = limit.tile_quadtree(self._depth, progress=progress)
+        try:
+            self.tree = limit.tile_quadtree(self._depth, progress=progress)
+        except ValueError as error:
+            raise RefusalError(
+                f"The tables of {self._surface.name} would take more than 3 GB, because a vertex "
+                "has hundreds of faces, or a face hundreds of sides: choose a smaller depth, or "
+                "divide such faces"
+            ) from error
         if self._levels is None:
             return
         faces = np.flatnonzero(self.tree.child[: limit.face_count] != _NO_TILE)
