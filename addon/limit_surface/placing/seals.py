@@ -29,10 +29,10 @@ _counts: dict[int, tuple[int, int]] = {}
 
 def seal(data: bpy.types.ID, rows: np.ndarray) -> None:
     """Says of these vertices of a mesh that their places are their own; the others keep what they
-    have. Does nothing for other data, whose edits copy places as a whole, nor without vertices:
-    a mesh without places has no attributes of places.
+    have. Does nothing for other data, whose edits copy places as a whole, nor for a mesh none of
+    whose vertices has a place: it may lack the attributes of places.
     """
-    if not isinstance(data, bpy.types.Mesh) or not len(rows):
+    if not isinstance(data, bpy.types.Mesh) or (len(data.vertices) and not len(rows)):
         return
     values = np.zeros((len(data.vertices), 3), np.float32)
     if _has_seals(data):
