@@ -365,3 +365,12 @@ def test_tables_that_would_be_too_large_are_refused():
     ):
         bpy.ops.object.limit_sample_tables(depth=24)
     assert set(bpy.data.objects) == before
+
+
+def test_faces_of_a_deleted_mesh_can_be_a_surface():
+    ob = sampled(levels=1, depth=2)
+    faces = all_tiles.faces_of(ob)
+    bpy.data.objects.remove(ob)
+    scenes.activate(faces)
+    assert bpy.ops.object.limit_sample_tables(depth=2) == {"FINISHED"}
+    assert all_tiles.of_surface(faces) is not None

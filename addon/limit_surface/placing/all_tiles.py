@@ -81,6 +81,10 @@ class AllTiles:
         return table
 
     @property
+    def surface(self) -> bpy.types.Object:
+        return self._surface.find()
+
+    @property
     def surface_name(self) -> str:
         return self._surface.name
 
@@ -158,11 +162,11 @@ def left_behind() -> list[bpy.types.Object]:
     return [ob for ob in bpy.data.objects if _is_left_behind(ob)]
 
 
-def remove_left_behind() -> tuple[str, list[str]]:
-    """Removes them. Returns a sentence for the report, or nothing where there are none, and the
-    names of what has read them.
+def remove_left_behind(but: bpy.types.Object | None = None) -> tuple[str, list[str]]:
+    """Removes them, but for a mesh of faces that has itself become a surface. Returns a sentence
+    for the report, or nothing where there are none, and the names of what has read them.
     """
-    found = left_behind()
+    found = [ob for ob in left_behind() if ob != but]
     if not found:
         return "", []
     before = len(bpy.data.objects)

@@ -69,7 +69,7 @@ class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
         return self.watch(context, Job(work), f"Making tables of {surface.name}")
 
     def finish(self, _context: bpy.types.Context, made: AllTiles) -> set[str]:
-        left, readers = remove_left_behind()
+        left, readers = remove_left_behind(but=made.surface)
         with mended():
             made.write()
         self.summary = (
