@@ -374,3 +374,6 @@ def test_faces_of_a_deleted_mesh_can_be_a_surface():
     scenes.activate(faces)
     assert bpy.ops.object.limit_sample_tables(depth=2) == {"FINISHED"}
     assert all_tiles.of_surface(faces) is not None
+    scenes.activate(deforming("cross"))
+    assert bpy.ops.object.limit_sample_tables(depth=2) == {"FINISHED"}
+    assert all_tiles.of_surface(faces) is not None

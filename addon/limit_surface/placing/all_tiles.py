@@ -163,8 +163,8 @@ def left_behind() -> list[bpy.types.Object]:
 
 
 def remove_left_behind(but: bpy.types.Object | None = None) -> tuple[str, list[str]]:
-    """Removes them, but for a mesh of faces that has itself become a surface. Returns a sentence
-    for the report, or nothing where there are none, and the names of what has read them.
+    """Removes them, except for one that is about to become a surface. Returns a sentence for the
+    report, or nothing where there are none, and the names of what has read them.
     """
     found = [ob for ob in left_behind() if ob != but]
     if not found:
@@ -184,6 +184,8 @@ def _is_left_behind(ob: bpy.types.Object) -> bool:
             return False  # nothing tells whose table it is
         surface = tables.surface_of(ob)
     elif ids.FACES_MARK in ob:
+        if tables.all_of_surface(ob):
+            return False  # it has become a surface itself
         surface = ob.parent
     else:
         return False
