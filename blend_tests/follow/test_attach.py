@@ -385,8 +385,9 @@ def test_a_carrier_that_carries_nothing_any_more_is_removed():
     check(ob, objects, before)
 
 
+@pytest.mark.parametrize("follows", ["by nodes", "live"])
 @pytest.mark.parametrize("leave", ["delete", "detach"])
-def test_a_carrier_that_carries_nothing_is_removed_when_it_is_unbound(leave):
+def test_a_carrier_that_carries_nothing_is_removed_when_it_is_unbound(leave, follows):
     ob = deforming("cross")
     objects = props(ob, 2)
     attach(ob, objects)
@@ -396,6 +397,11 @@ def test_a_carrier_that_carries_nothing_is_removed_when_it_is_unbound(leave):
     else:
         bpy.ops.object.parent_clear(type="CLEAR_KEEP_TRANSFORM")
     select(ob, [])
+    if follows == "live":
+        assert bpy.ops.object.limit_follow(mode="LIVE") == {"FINISHED"}
+        (carrier,) = carriers()
+        assert live_modifier_of(carrier)
+        assert not modifier_of(carrier)
     assert bpy.ops.object.limit_unbind() == {"FINISHED"}
     assert not carriers()
     assert not [mesh for mesh in bpy.data.meshes if mesh.name.startswith("Limit")]

@@ -93,15 +93,17 @@ class LiveRequest:
                 following.settle(ob)
         for relocation in self._relocations or ():
             relocation.write()
-        if self._by_nodes:
-            self._unbinding.write()
-        following.ensure_capture(self._surface)
-        live.read_anew(self._surface)
         for ob in self._things:
             modifier = followers.live_modifier_of(ob)
             if modifier is None:
                 modifier = groups.add_modifier(ob, FOLLOW_LIVE, place=places.get(ob, 0))
             groups.set_input(modifier, SURFACE, self._surface)
+        if self._by_nodes:
+            # they follow live already, so that what is removed with their nodes is not needed
+            self._unbinding.write()
+        following.ensure_capture(self._surface)
+        live.read_anew(self._surface)
+        for ob in self._things:
             live_source.store(ob.data, self._surface, self._signature)
         depsgraph = context.evaluated_depsgraph_get()
         for ob in self._things:

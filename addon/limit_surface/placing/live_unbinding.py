@@ -15,7 +15,7 @@ from . import followers, following, live, live_attributes, live_binding, live_so
 from .places import NOWHERE, Places
 from .posed_surface import Places as PosedPlaces
 from .posed_surface import PosedSurface
-from .unbinding import posed_if_there
+from .unbinding import posed_if_there, remove_unused_carriers
 
 _NO_ROWS = np.empty(0, np.int64)
 
@@ -60,6 +60,7 @@ class LiveUnbinding:
         for surface in set(self._surfaces.values()) - {None}:
             following.remove_unused_capture(surface)
         names = ", ".join(ob.name for ob in self._things)
+        remove_unused_carriers()
         where = "where they are shown now" if self._shape == "SHOWN" else "where they are at rest"
         return f"Unbound {where}: {names}"
 

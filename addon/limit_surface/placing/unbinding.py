@@ -215,7 +215,8 @@ def remove_unused_carriers() -> None:
     """
     for ob in list(bpy.data.objects):
         is_carrier = ob.library is None and not ob.override_library and ids.CARRIER_MARK in ob
-        if is_carrier and followers.modifier_of(ob) is None and not ob.children:
+        follows = followers.modifier_of(ob) or followers.live_modifier_of(ob)
+        if is_carrier and not follows and not ob.children:
             tables.remove_object(ob)
 
 

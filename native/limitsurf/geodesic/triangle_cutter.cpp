@@ -32,16 +32,8 @@ SurfaceTriangles::Corner between(const SurfaceTriangles::Corner& a,
 
 TriangleCutter::TriangleCutter(SurfaceTriangles& triangles)
     : triangles_(triangles),
-      around_(triangles.points.size()),
-      whole_count_(triangles.vertices.size()) {
-  InterruptionStride stride;
-  for (std::size_t number = 0; number < whole_count_; ++number) {
-    stride.step();
-    for (const int point : triangles.vertices[number]) {
-      around_[point].push_back(static_cast<int>(number));
-    }
-  }
-}
+      around_(triangles.points.size(), triangles.vertices),
+      whole_count_(triangles.vertices.size()) {}
 
 int TriangleCutter::insert(int triangle, const Location& at, double tolerance) {
   const auto pieces = pieces_.find(triangle);
@@ -90,9 +82,7 @@ int TriangleCutter::addTriangle(int like) {
   again(triangles_.corners);
   again(triangles_.is_cut);
   again(triangles_.face);
-  for (const int point : triangles_.vertices[number]) {
-    around_[point].push_back(number);
-  }
+  around_.addTriangle(triangles_.vertices[number]);
   const bool is_piece = static_cast<std::size_t>(like) >= whole_count_;
   const int origin = is_piece ? origin_[like - whole_count_] : like;
   origin_.push_back(origin);
@@ -106,9 +96,7 @@ int TriangleCutter::addTriangle(int like) {
 
 /// Gives a corner of a triangle another point.
 void TriangleCutter::place(int triangle, int corner, int point, SurfaceTriangles::Corner at) {
-  std::vector<int>& before = around_[triangles_.vertices[triangle][corner]];
-  before.erase(std::find(before.begin(), before.end(), triangle));
-  around_[point].push_back(triangle);
+  around_.moveCorner(triangle, corner, triangles_.vertices[triangle][corner], point);
   triangles_.vertices[triangle][corner] = point;
   triangles_.corners[triangle][corner] = at;
 }
@@ -128,8 +116,8 @@ int TriangleCutter::splitSide(int a, int b, double share) {
   const int point = static_cast<int>(triangles_.points.size());
   const Vector3 from = triangles_.points[a], to = triangles_.points[b];
   triangles_.points.push_back(from + share * (to - from));
-  around_.emplace_back();
-  const std::vector<int> at_a = around_[a];
+  around_.addPoint();
+  const std::vector<int> at_a(around_[a].begin(), around_[a].end());
   for (const int first : at_a) {
     const int corner_b = cornerOf(first, b);
     if (corner_b < 0) {
@@ -162,7 +150,7 @@ int TriangleCutter::splitTriangle(int triangle, const std::array<double, 3>& wei
   const SurfaceTriangles::Corner middle{static_cast<std::int32_t>(std::lround(u)),
                                         static_cast<std::int32_t>(std::lround(v))};
   triangles_.points.push_back(position);
-  around_.emplace_back();
+  around_.addPoint();
   const std::array<int, 3> parts = {triangle, addTriangle(triangle), addTriangle(triangle)};
   for (int k = 0; k < 3; ++k) {
     // the part keeps the side from corner k + 1 to corner k + 2
@@ -174,10 +162,6 @@ int TriangleCutter::splitTriangle(int triangle, const std::array<double, 3>& wei
 
 void TriangleCutter::release() {
   InterruptionStride stride;
-  for (std::vector<int>& triangles : around_) {
-    stride.step();
-    triangles = {};
-  }
   while (!pieces_.empty()) {
     stride.step();
     pieces_.erase(pieces_.begin());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limitsurf/geodesic/surface_triangles.h"
+#include "limitsurf/geodesic/triangles_around.h"
 
 namespace limitsurf {
 
@@ -49,7 +50,7 @@ class TriangleCutter {
   void cutShortestWay(int from, int to);
 
   SurfaceTriangles& triangles_;
-  std::vector<std::vector<int>> around_;  // the triangles at each point
+  TrianglesAround around_;
   // of triangles that were divided: all their pieces; and of pieces: what they are pieces of
   std::unordered_map<int, std::vector<int>> pieces_;
   std::size_t whole_count_;
