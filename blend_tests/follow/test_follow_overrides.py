@@ -233,5 +233,5 @@ def test_rebinding_names_the_overrides_that_it_leaves_alone(follow, tmp_path, ca
     scenes.add_points(ob, follow="NODES")
     select(ob)
     assert bpy.ops.object.limit_rebind() == {"FINISHED"}
-    text = "because Blender does not save it of library overrides: Limit Hair"
+    text = "because Blender would not save the new places of library overrides: Limit Hair"
     assert text in capfd.readouterr().out

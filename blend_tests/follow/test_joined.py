@@ -106,8 +106,8 @@ def test_what_was_joined_goes_to_its_place_when_something_else_is_bound():
 
 
 def without_frames(hair: bpy.types.Object) -> np.ndarray:
-    """Deletes frames at rest as earlier versions did when strands were joined, and returns which
-    strands have none.
+    """Deletes rest orientations as versions before 0.2.0 did when strands were joined, and returns
+    which strands have none.
     """
     rotation = attributes.read(hair.data, ids.REST_ROTATION)
     has_none = np.arange(len(rotation)) % 3 == 0
@@ -117,10 +117,10 @@ def without_frames(hair: bpy.types.Object) -> np.ndarray:
     return has_none
 
 
-def test_a_file_of_an_earlier_version_says_what_stays_still(tmp_path, capfd):
+def test_a_file_from_before_0_2_0_says_what_stays_still(tmp_path, capfd):
     ob = deforming("grid with holes")
     hair = scenes.add_hair(ob, follow="LIVE")
-    expected = f"Limit Hair: {without_frames(hair).sum()} strands stay still, because an earlier"
+    expected = f"Limit Hair: {without_frames(hair).sum()} strands stay still, because the file"
     path = str(tmp_path / "earlier.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
@@ -130,7 +130,7 @@ def test_a_file_of_an_earlier_version_says_what_stays_still(tmp_path, capfd):
 
 
 @pytest.mark.parametrize("how", ["LIVE", "NODES", "rebind"])
-def test_strands_of_an_earlier_version_are_bound_where_they_are(how):
+def test_strands_from_before_0_2_0_are_bound_where_they_are(how):
     ob = deforming("grid with holes")
     hair = scenes.add_hair(ob, follow="LIVE")
     without_frames(hair)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Strands that lean into a flow: comb maps, vector attributes and principal directions."""
+"""Strands that lean into a flow: flow maps, vector attributes and principal directions."""
 
 import bpy
 import numpy as np
@@ -45,7 +45,7 @@ def leaning(ob, towards, angle):
     return np.cos(angle) * normal + np.sin(angle) * unit(towards @ linear.T)
 
 
-def add_comb_map(name, x, y, size=4):
+def add_flow_map(name, x, y, size=4):
     pixels = np.ones((size, size, 4), np.float32)
     pixels[:, :, :2] = 0.5 + 0.5 * np.array([x, y])
     pixels[:, :, 2] = 0.9  # blue means nothing
@@ -54,13 +54,13 @@ def add_comb_map(name, x, y, size=4):
 
 @pytest.mark.parametrize("transform", TRANSFORMS)
 @pytest.mark.parametrize("turned", [False, True])
-def test_comb_maps_are_in_the_tangent_space_of_the_uv_map(turned, transform):
+def test_flow_maps_are_in_the_tangent_space_of_the_uv_map(turned, transform):
     """Red is along growing U, and green along growing V, also where the map is mirrored."""
     ob = scenes.flat_grid(SIDE)
     place(ob, TRANSFORMS[transform])
     along_u, along_v = ([0, 1, 0], [1, 0, 0]) if turned else ([1, 0, 0], [0, 1, 0])
     add_uv_map(ob, lambda p: p @ np.stack([along_u, along_v], axis=1) / SIDE)
-    add_comb_map("Comb", 0.6, -0.8)
+    add_flow_map("Comb", 0.6, -0.8)
     hair = add_hair(ob, flow_source="IMAGE", flow_image="Comb", flow_angle=ANGLE)
     direction, root = world_directions(hair)
     direction = direction[is_inner(root)]
@@ -70,16 +70,16 @@ def test_comb_maps_are_in_the_tangent_space_of_the_uv_map(turned, transform):
 
 
 @pytest.mark.parametrize(("x", "y", "part"), [(0, 0, 0), (0.3, 0.4, 0.5), (0, 1, 1), (1, 1, 1)])
-def test_strands_lean_by_the_length_in_the_comb_map(x, y, part):
+def test_strands_lean_by_the_length_in_the_flow_map(x, y, part):
     ob = scenes.flat_grid(2)
     add_uv_map(ob, lambda p: p[:, :2] / 2)
-    add_comb_map("Comb", x, y)
+    add_flow_map("Comb", x, y)
     hair = add_hair(ob, flow_source="IMAGE", flow_image="Comb", flow_angle=ANGLE)
     direction, _ = world_directions(hair)
     np.testing.assert_allclose(direction[:, 2], np.cos(part * ANGLE), atol=2e-5)
 
 
-def test_comb_maps_change_linearly_between_pixels():
+def test_flow_maps_change_linearly_between_pixels():
     ob = scenes.flat_grid(SIDE)
     add_subsurf(ob).uv_smooth = "NONE"
     add_uv_map(ob, lambda p: p[:, :2] / SIDE)
@@ -210,14 +210,14 @@ REFUSED = {
 @pytest.mark.parametrize("match", REFUSED)
 def test_flows_that_cannot_be_used(match):
     ob = scenes.flat_grid(2)
-    add_comb_map("Comb", 1, 0)
+    add_flow_map("Comb", 1, 0)
     attributes.write(ob.data, "number", "FLOAT", "POINT", np.ones(9))
     attributes.write(ob.data, "edges", "FLOAT_VECTOR", "EDGE", np.ones((12, 3)))
     attributes.write(ob.data, "hole", "FLOAT_VECTOR", "POINT", np.full((9, 3), np.inf))
     check_hair_refused(f"Flow: .*{match}", REFUSED[match])
 
 
-def test_a_comb_map_without_pixels(tmp_path):
+def test_a_flow_map_without_pixels(tmp_path):
     add_uv_map(scenes.flat_grid(2), lambda p: p[:, :2])
     missing = bpy.data.images.new("Gone", 4, 4)
     missing.source, missing.filepath = "FILE", str(tmp_path / "gone.png")

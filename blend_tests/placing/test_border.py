@@ -272,9 +272,9 @@ def test_rows_keep_their_distance_along_the_surface(capfd):
     assert (np.diff(numbers) < 0).all()
     assert numbers[3] > 0
     said = capfd.readouterr().out
-    assert "where they would meet: of 200 in each row" in said
+    assert "or rows would meet (missing of 200: " in said
     for lacking, name in zip(200 - numbers[1:], ("row 2", "row 3", "row 4"), strict=True):
-        assert f"{name} lacks {lacking}" in said
+        assert f"{lacking} in {name}" in said
 
 
 def test_rows_that_do_not_end_are_not_mentioned(capfd):
@@ -282,4 +282,4 @@ def test_rows_that_do_not_end_are_not_mentioned(capfd):
     add_points(bpy.context.active_object, distribution="BORDER", count=50, rows=3)
     said = capfd.readouterr().out
     assert "150 points along 2 borders" in said
-    assert "rows end" not in said
+    assert "shorter" not in said

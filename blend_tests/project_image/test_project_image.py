@@ -476,7 +476,7 @@ def test_refusals_about_sources():
     camera = truth.add_camera((0.5, 0.5, -3), (0.5, 0.5, -9))
     refused(ob, "No part of the image Shown reaches the surface")
     refused(ob, "There is no mesh 'Camera'", source="NORMALS", from_object=camera.name)
-    refused(ob, "first angle of Facing is larger", facing=(1.5, 1.0))
+    refused(ob, "Full Up To is larger than", facing=(1.5, 1.0))
 
 
 def test_cameras_inside_are_refused():

@@ -172,18 +172,18 @@ def set_up(ob, **settings):
 @pytest.mark.parametrize(
     ("settings", "text", "least", "most"),
     [
-        (None, "Control mesh, not its limit", NEAR, np.inf),
+        (None, "Control mesh: no modifier", NEAR, np.inf),
         ({"show_viewport": False}, "Control mesh: modifier is off", NEAR, np.inf),
         (
             {"show_viewport": False, "show_render": False},
-            "Control mesh, not its limit",
+            "Control mesh: no modifier",
             NEAR,
             np.inf,
         ),
         ({"levels": 0}, "Control mesh: level is 0", NEAR, np.inf),
-        ({"use_limit_surface": False}, "Level 2, away from the limit", NEAR, np.inf),
-        ({"quality": 2}, "Level 2, near the limit", ON, NEAR),
-        ({}, "Level 2, on the limit", 0, ON),
+        ({"use_limit_surface": False}, "Level 2, not on limit surface", NEAR, np.inf),
+        ({"quality": 2}, "Level 2, near limit surface", ON, NEAR),
+        ({}, "Level 2, on limit surface", 0, ON),
     ],
 )
 def test_what_is_shown(settings, text, least, most):

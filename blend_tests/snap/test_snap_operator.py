@@ -149,7 +149,7 @@ def test_needs_an_active_mesh_and_something_else():
     add_object((0, 0, 1))
     assert bpy.ops.object.limit_snap.poll()
     bpy.ops.object.mode_set(mode="VERTEX_PAINT")
-    refused("Only available in Object Mode, and in Edit Mode of")
+    refused("Only available in Object Mode, in Edit Mode of")
 
 
 def test_nothing_within_reach_changes_nothing():

@@ -53,12 +53,12 @@ def test_panel_tells_whether_the_limit_is_shown():
     ob = scenes.cross()
     layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
     assert "Cross" in labels(layout)
-    assert "Control mesh, not its limit" in labels(layout.row())
+    assert "Control mesh: no modifier" in labels(layout.row())
     assert layout.row().alert is True
     assert layout.row().operator.call_args.args == (ids.SHOW,)
     bpy.ops.object.limit_show()
     layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
-    assert "Level 3, on the limit" in labels(layout.row())
+    assert "Level 3, on limit surface" in labels(layout.row())
     assert layout.row().alert is False
     assert not layout.row().operator.called
     bpy.context.view_layer.objects.active = None

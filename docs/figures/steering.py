@@ -43,7 +43,7 @@ def paint_group(ob: bpy.types.Object) -> None:
         group.add([vertex.index], max(1 - far, 0), "REPLACE")
 
 
-def paint_comb_map(ob: bpy.types.Object) -> None:
+def paint_flow_map(ob: bpy.types.Object) -> None:
     """Waves: red is to the right, green to the back."""
     size = 128
     y, x = (np.mgrid[:size, :size] + 0.5) / size
@@ -87,10 +87,10 @@ STEERED = (
         paint_group,
     ),
     Panel(
-        "Flow from a comb map",
+        "Flow from an image",
         "red is along U, green along V",
         {"flow_source": "IMAGE", "flow_image": "Comb", "flow_angle": 1.25},
-        paint_comb_map,
+        paint_flow_map,
     ),
     Panel(
         "Flow from curves",

@@ -144,8 +144,8 @@ class DisplacementProperties(TextureProperties):
     )
     use_tiles: BoolProperty(
         name="UDIM Tiles",
-        description="Make a tiled image with all tiles that the UV map touches, instead of an "
-        "image of the first tile",
+        description="Make a tiled image with all tiles in which the UV map covers texels, instead "
+        "of an image of the first tile",
         default=False,
     )
     face_resolution: EnumProperty(

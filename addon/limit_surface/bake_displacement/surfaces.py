@@ -91,8 +91,7 @@ def _polygons(
     if not evaluated.is_evaluated:  # so this would be the mesh without its modifiers
         raise RefusalError(
             f"{target.name} is disabled in viewports or is not in this view layer, so the "
-            "viewport shows no polygons of it: enable it, or choose the limit surface as the "
-            "target's shape"
+            "viewport shows no polygons of it: enable it, or set Sculpted Surface to Limit"
         )
     mesh = evaluated.data
     if not mesh.polygons:

@@ -38,8 +38,8 @@ class BakeProperties(TextureProperties):
             (
                 "ALL",
                 "All",
-                "Bake all tiles that the UV map touches, into tiled images unless 1001 is the only "
-                "tile",
+                "Bake all tiles in which the UV map covers texels, into tiled images unless 1001 "
+                "is the only tile",
                 "",
                 1,
             ),

@@ -39,7 +39,7 @@ class PartingProperties:
             ),
             (
                 "FACE_ATTRIBUTE",
-                "Face Map",
+                "Face Attribute",
                 "Part between faces that have different values of an attribute",
                 "",
                 3,

@@ -124,8 +124,8 @@ class OBJECT_OT_limit_mesh(
     store_locations: BoolProperty(
         name="Store Locations",
         description="Store the location of each vertex on the surface, and the frame there, as "
-        "attributes limit_face, limit_uv, rest_root and rest_rot. A mesh that follows always has "
-        "them",
+        "attributes limit_face, limit_uv, rest_root, rest_rot and limit_seal. A mesh that follows "
+        "always has them",
         default=False,
     )
     hide_original: BoolProperty(

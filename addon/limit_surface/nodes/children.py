@@ -35,7 +35,7 @@ def _build() -> bpy.types.NodeTree:
         [
             Socket("Geometry", "Geometry", "Curves without strands"),
             Socket(SURFACE, "Object", "Mesh to grow on, which has the modifier Limit Capture"),
-            Socket(TILES, "Object", "Hidden object that holds all patches of its limit surface"),
+            Socket(TILES, "Object", "Hidden object that holds all tiles of its limit surface"),
             Socket(TABLE, "Object", "Hidden object that stores where the children grow"),
             Socket(GUIDES, "Object", "Hair curves that the children follow"),
             Socket(POINTS, "Int", "Number of points on each strand, including the root"),

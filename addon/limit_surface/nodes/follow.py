@@ -53,7 +53,7 @@ def new_tree(name: str, what: str, *more: Socket) -> Tree:
         [
             Socket("Geometry", "Geometry", f"{what} at rest"),
             Socket(SURFACE, "Object", "Mesh to follow, which has the modifier Limit Capture"),
-            Socket(TILES, "Object", "Hidden object that holds the patches of its limit surface"),
+            Socket(TILES, "Object", "Hidden object that holds the tiles of its limit surface"),
             *more,
         ],
         [Socket("Geometry", "Geometry", f"{what} on the surface as it is in this frame")],

@@ -20,7 +20,7 @@ LEVELS, FACES = "levels", "faces"  # the same on all vertices
 ALL_TILES = Socket(
     "Tiles",
     "Object",
-    "Hidden object that holds all patches of the mesh's limit surface: Limit All Tiles, and the "
+    "Hidden object that holds all tiles of the mesh's limit surface: Limit All Tiles, and the "
     "mesh's name. The operator Tables for Sample Limit Surface makes it",
 )
 FACE = Socket(
@@ -51,10 +51,10 @@ def _build() -> bpy.types.NodeTree:
             Socket(
                 "Tile",
                 "Int",
-                "Number of the patch of the limit surface that holds the place, counted from 0. "
+                "Number of the tile of the limit surface that holds the place, counted from 0. "
                 "It is for the input Tile of Sample Limit Surface",
             ),
-            Socket("Tile UV", "Vector", "Place in that patch: X and Y from 0 to 1"),
+            Socket("Tile UV", "Vector", "Place in that tile: X and Y from 0 to 1"),
             Socket(
                 "Found", "Bool", "False if the mesh has no such face, or no limit surface on it"
             ),

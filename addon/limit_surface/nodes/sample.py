@@ -17,13 +17,13 @@ _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 TILE = Socket(
     "Tile",
     "Int",
-    "Number of one of the patches of which the limit surface consists here, counted from 0: the "
+    "Number of one of the tiles of which the limit surface consists here, counted from 0: the "
     "output Tile of Locate Limit Tile",
 )
 TILE_UV = Socket(
     "Tile UV",
     "Vector",
-    "Place in that patch: X and Y from 0 to 1, as the output Tile UV of Locate Limit Tile gives it",
+    "Place in that tile: X and Y from 0 to 1, as the output Tile UV of Locate Limit Tile gives it",
 )
 
 OUTPUTS = (
@@ -58,7 +58,7 @@ def _build() -> bpy.types.NodeTree:
             Socket(
                 "Tiles",
                 "Object",
-                "Hidden object that holds the patches of that mesh's limit surface: Limit Tiles or "
+                "Hidden object that holds the tiles of that mesh's limit surface: Limit Tiles or "
                 "Limit All Tiles, and the mesh's name",
             ),
             TILE,

@@ -37,7 +37,7 @@ def _build() -> bpy.types.NodeTree:
         [
             Socket("Geometry", "Geometry", "Patches of a limit surface, as rows of a table"),
             Socket("Surface", "Object", "Mesh object, which has the modifier Limit Capture"),
-            Socket("Points", "Object", "Hidden object that holds the points of the patches"),
+            Socket("Points", "Object", "Hidden object that holds the points of the tiles"),
             Socket("Cage Count", "Int", "Number of the mesh's vertices when the table was made"),
             Socket("Cage Topology", "Int", "Checksum of its edges, to notice changes"),
             Socket("Refined Points", "Int", "Number of points that are weighted sums of vertices"),
@@ -51,7 +51,7 @@ def _build() -> bpy.types.NodeTree:
                 "Checksum of the creases of vertices, to notice changes",
             ),
         ],
-        [Socket("Geometry", "Geometry", "The table, with the shapes of the patches in this frame")],
+        [Socket("Geometry", "Geometry", "The table, with the shapes of the tiles in this frame")],
         is_modifier=True,
     )
     by_proxy = tree.both(tree.get("GeometryNodeIsViewport"), tree.inputs["Use Proxy"])

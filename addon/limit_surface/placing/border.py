@@ -70,13 +70,13 @@ def where_rows_end(ended: np.ndarray, asked_for: int) -> str:
     short = np.flatnonzero(ended)
     if not len(short):
         return ""
-    lacking = [f"row {row + 1} lacks {ended[row]:,}" for row in short[:MOST_ROWS_NAMED]]
+    lacking = [f"{ended[row]:,} in row {row + 1}" for row in short[:MOST_ROWS_NAMED]]
     others = short[MOST_ROWS_NAMED:]
     if len(others):
-        lacking.append(f"the other rows {ended[others].sum():,}")
+        lacking.append(f"{ended[others].sum():,} in the other rows")
     return (
-        "rows end where the surface ends and where they would meet: of "
-        f"{asked_for:,} in each row, {', '.join(lacking)}"
+        "some rows are shorter, because the surface ends or rows would meet (missing of "
+        f"{asked_for:,}: {', '.join(lacking)})"
     )
 
 

@@ -33,7 +33,7 @@ def _misplaced(surface: bpy.types.Object, capture: bpy.types.NodesModifier) -> s
     here = surface.modifiers.find(capture.name)
     if subsurf is None:
         later = [m for m in surface.modifiers[here + 1 :] if m.show_viewport or m.show_render]
-        return "is not the last modifier, as it must be without a subdivision" if later else ""
+        return "has to be the last one, because none of them subdivides the mesh" if later else ""
     there = surface.modifiers.find(subsurf.name)
     if here > there or any(m.show_viewport for m in surface.modifiers[here + 1 : there]):
         return "is not directly before the Subdivision Surface modifier"

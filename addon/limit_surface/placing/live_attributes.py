@@ -75,8 +75,8 @@ def added(data: bpy.types.ID) -> np.ndarray:
 
 
 def lost_frames(data: bpy.types.ID) -> int:
-    """Returns the number of strands that stay still because an earlier version of the extension has
-    deleted their frames at rest.
+    """Returns the number of strands that stay still because the file was made before version 0.2.0,
+    and lacks their rest orientation.
     """
     if missing(data):
         return 0

@@ -76,7 +76,7 @@ def _reason(ob: bpy.types.Object) -> _Reason:
 
 
 def trouble_in_file(ob: bpy.types.Object) -> str:
-    """Returns what an earlier version of the extension has left behind that does not follow."""
+    """Returns what does not follow because the file was made before version 0.2.0."""
     return _lost_frames(ob, live_attributes.lost_frames(ob.data))
 
 
@@ -85,8 +85,8 @@ def _lost_frames(ob: bpy.types.Object, count: int) -> str:
         return ""
     things = counted(count, "strands" if ob.type == "CURVES" else "points")
     return (
-        f"{ob.name}: {things} stay still, because an earlier version of the extension has deleted "
-        "their frames at rest. Follow Limit Surface binds them where they are"
+        f"{ob.name}: {things} stay still, because the file was made before version 0.2.0 of the "
+        "extension and lacks their rest orientation. Follow Limit Surface binds them where they are"
     )
 
 

@@ -67,8 +67,8 @@ def check_uv(uv: np.ndarray, called: str) -> None:
 class Places:
     """The locations of the elements that have one. All attributes of curves that were added later
     have Blender's default values, and snapped hair that is bound nowhere has the face NOWHERE.
-    Earlier versions deleted the frames at rest of strands that were joined to hair that followed
-    live: without a frame a strand has no place. Nor have vertices whose seals are broken.
+    Before version 0.2.0, strands that were joined to hair that followed live lost their rest
+    orientation: without it a strand has no place. Nor have vertices whose seals are broken.
     """
 
     count: int

@@ -60,8 +60,8 @@ class Rebound:
         texts = [self._about_lost()] if self.lost else []
         if self.overridden:
             texts.append(
-                f"Not bound again, because Blender does not save it of library overrides: "
-                f"{', '.join(self.overridden)}"
+                "Not bound again, because Blender would not save the new places of library "
+                f"overrides: {', '.join(self.overridden)}"
             )
         return texts
 

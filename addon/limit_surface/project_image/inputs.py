@@ -87,7 +87,7 @@ def source(
 def facing(properties: bpy.types.OperatorProperties) -> tuple[float, float]:
     start, end = properties.facing
     if not start <= end:
-        raise RefusalError("The first angle of Facing is larger than the second")
+        raise RefusalError("The angle Full Up To is larger than the angle Nothing From")
     return start, end
 
 

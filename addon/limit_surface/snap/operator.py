@@ -279,8 +279,8 @@ def _obstacle(context: bpy.types.Context) -> str:
         return native.obstacle()
     if context.mode not in MODES:
         return (
-            "Only available in Object Mode, and in Edit Mode of meshes, curves, hair, lattices and "
-            "armatures"
+            "Only available in Object Mode, in Edit Mode of meshes, curves, surfaces, lattices, "
+            "armatures and hair, and in Sculpt Mode of hair"
         )
     target = find_target(context)
     if context.mode == "OBJECT":

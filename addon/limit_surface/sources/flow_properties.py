@@ -29,7 +29,7 @@ class FlowProperties:
             (
                 "IMAGE",
                 "Image",
-                "Use a comb map, an image of directions: red is the part along the UV map's U, "
+                "Use a flow map, an image of directions: red is the part along the UV map's U, "
                 "green the part along its V, and 0.5 in both means no direction",
                 "IMAGE_DATA",
                 1,
@@ -70,7 +70,7 @@ class FlowProperties:
         default="NONE",
     )
     flow_image: StringProperty(
-        name="Comb Map", description="Name of the image that holds the directions"
+        name="Flow Map", description="Name of the image that holds the directions"
     )
     flow_attribute: StringProperty(
         name="Attribute", description="Name of the vector attribute that holds the directions"

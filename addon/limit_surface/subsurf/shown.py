@@ -22,7 +22,7 @@ def of(ob: bpy.types.Object, scene: bpy.types.Scene) -> Shown:
     drawing.
     """
     if rules.find_subsurf(ob) is None:
-        return Shown("Control mesh, not its limit", False)
+        return Shown("Control mesh: no modifier", False)
     subsurf = rules.shown_subsurf(ob)
     if subsurf is None:
         return Shown("Control mesh: modifier is off", False)
@@ -32,10 +32,10 @@ def of(ob: bpy.types.Object, scene: bpy.types.Scene) -> Shown:
     if subsurf.subdivision_type == "SIMPLE":
         return Shown(f"Level {level}, simple", True, False)
     if not subsurf.use_limit_surface:
-        return Shown(f"Level {level}, away from the limit", False)
+        return Shown(f"Level {level}, not on limit surface", False)
     if subsurf.quality < QUALITY:
-        return Shown(f"Level {level}, near the limit", False, False)
-    return Shown(f"Level {level}, on the limit", True, False)
+        return Shown(f"Level {level}, near limit surface", False, False)
+    return Shown(f"Level {level}, on limit surface", True, False)
 
 
 def shown_level(subsurf: bpy.types.SubsurfModifier, scene: bpy.types.Scene) -> int:
