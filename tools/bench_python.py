@@ -34,14 +34,14 @@ EVALUATED = (
     "boundary-EV",
     "corner",
     "multi-EV",
-    "n-gon",
+    "non-quad",
     "near-interior-EV",
     "near-boundary-EV",
     "near-corner",
     "mixed-20k-faces",
 )
 #: Rows of evaluation whose meshes are opened and posed as well
-OPENED = ("multi-EV", "n-gon", "mixed-20k-faces")
+OPENED = ("multi-EV", "non-quad", "mixed-20k-faces")
 #: Searches and their rows in the table of limitsurf_bench
 SEARCHED = {
     "closest-far": "closest, to 5 % of the diagonal",

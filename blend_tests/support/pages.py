@@ -25,16 +25,27 @@ def check_properties(
     category: str = "object",
 ) -> None:
     """The section's table lists the properties of `bpy.ops.<category>.<operator>`, or `only` some
-    of them, and their defaults. `empty` is how it shows an empty name."""
+    of them, with their defaults, and the labels that differ from their names. `empty` is how it
+    shows an empty name."""
     rows: dict[str, str] = {}
-    row = r"^\| (`[^|]+`) \| *`?([^|`]*?)`? *\|"
-    for names, said in re.findall(row, section, re.MULTILINE):
-        rows |= dict.fromkeys(re.findall(r"`(\w+)`", names), said)
+    labels: dict[str, list[str]] = {}
+    row = r"^\| (`[^|]+`)(?: \(([^|]+)\))? \| *`?([^|`]*?)`? *\|"
+    for names, called, said in re.findall(row, section, re.MULTILINE):
+        named = re.findall(r"`(\w+)`", names)
+        rows |= dict.fromkeys(named, said)
+        labels |= dict.fromkeys(named, re.findall(r"\*([^*]+)\*", called))
     properties = getattr(getattr(bpy.ops, category), operator).get_rna_type().properties
     shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
     if only is not None:
         shown = {name: rna for name, rna in shown.items() if name in only}
     assert rows == {name: default_of(rna, empty) for name, rna in shown.items()}
+    for name, rna in shown.items():
+        assert is_plain(name, rna.name) or rna.name in labels[name], name
+
+
+def is_plain(identifier: str, label: str) -> bool:
+    """Whether one can tell the label of a property from its name."""
+    return label.lower().replace("-", " ") == identifier.replace("_", " ")
 
 
 def default_of(rna: bpy.types.Property, empty: str) -> str:

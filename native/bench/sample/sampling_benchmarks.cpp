@@ -190,7 +190,7 @@ std::vector<Group> samplingGroups(int count) {
   const std::pair<std::string, MeshArrays> cages[] = {{"mixed-10k-faces", test::largeCage(100)},
                                                       {"every class", test::everyClassCage()},
                                                       {"multi-EV", test::crossesCage()},
-                                                      {"n-gon", test::polygonsCage()}};
+                                                      {"non-quad", test::polygonsCage()}};
   for (const auto& [name, cage] : cages) {
     const auto shared = std::make_shared<const ScatterCage>(cage);
     const std::string row = name + "/" + std::to_string(cage.ptexFaceCount());

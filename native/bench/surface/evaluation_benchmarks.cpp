@@ -168,7 +168,7 @@ std::vector<std::shared_ptr<Samples>> evaluationRows(int sample_count) {
       {"boundary-EV", every_class, FaceClass::boundary_ev, {}},
       {"corner", every_class, FaceClass::corner, {}},
       {"multi-EV", crosses, FaceClass::multi_ev, {}},
-      {"n-gon", polygons, FaceClass::polygon, {}},
+      {"non-quad", polygons, FaceClass::polygon, {}},
       {"near-interior-EV", every_class, FaceClass::interior_ev, kNear},
       {"near-boundary-EV", every_class, FaceClass::boundary_ev, kNear},
       {"near-corner", every_class, FaceClass::corner, kNear},

@@ -91,7 +91,7 @@ std::vector<Group> setupGroups() {
   const std::pair<std::string, MeshArrays> cages[] = {
       {"regular", test::torusCage()},           {"interior-EV", test::interiorEvCage()},
       {"boundary-EV", test::boundaryEvCage()},  {"corner", test::cornersCage()},
-      {"multi-EV", test::crossesCage()},        {"n-gon", test::polygonsCage()},
+      {"multi-EV", test::crossesCage()},        {"non-quad", test::polygonsCage()},
       {"mixed-20k-faces", test::largeCage(144)}};
   std::vector<Group> groups;
   for (const auto& [name, cage] : cages) {
