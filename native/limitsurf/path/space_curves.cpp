@@ -6,19 +6,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/row_check.h"
 #include "limitsurf/search/checks.h"
 
 namespace limitsurf {
-namespace {
-
-void checkHandles(const PointRows& handles, const PointRows& points, const char* name) {
-  if (handles.rows() != points.rows()) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(handles.rows()) +
-                                " rows, but points has " + std::to_string(points.rows()));
-  }
-}
-
-}  // namespace
 
 std::int64_t SpaceCurves::segments(std::size_t curve) const {
   const std::int64_t count = offsets[curve + 1] - offsets[curve];
@@ -45,8 +36,8 @@ Vector3 SpaceCurves::at(std::size_t curve, double place) const {
 void SpaceCurves::check() const {
   checkFinite(points, "points");
   if (before.rows() > 0 || after.rows() > 0) {
-    checkHandles(before, points, "handle_left");
-    checkHandles(after, points, "handle_right");
+    checkRows("handle_left", before.rows(), points.rows(), "points");
+    checkRows("handle_right", after.rows(), points.rows(), "points");
     checkFinite(before, "handle_left");
     checkFinite(after, "handle_right");
   }

@@ -8,7 +8,6 @@
 
 #include "limitsurf/number_text.h"
 #include "limitsurf/pi.h"
-#include "limitsurf/row_check.h"
 
 namespace limitsurf {
 namespace {
@@ -59,10 +58,6 @@ void checkDirections(const PointRows& rows, const char* name) {
       refuse(name, row, rows, "has no length");
     }
   }
-}
-
-void checkRows(const PointRows& rows, Eigen::Index expected, const char* name) {
-  checkRows(name, rows.rows(), expected);
 }
 
 void checkDistance(double max_distance) {

@@ -15,8 +15,6 @@ constexpr double kFarthestPoint = 1e150;
 void checkFinite(const PointRows& rows, const char* name, double scale = 1);
 /// Directions must be finite and not 0.
 void checkDirections(const PointRows& rows, const char* name);
-/// There must be as many rows as `expected`.
-void checkRows(const PointRows& rows, Eigen::Index expected, const char* name);
 /// The distance must be 0 or more, and not NaN.
 void checkDistance(double max_distance);
 /// The angle, in radians, must be between 0 and pi.

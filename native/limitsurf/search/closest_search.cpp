@@ -10,6 +10,7 @@
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/prefetch.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/closest_on_cores.h"
@@ -303,7 +304,7 @@ void SurfaceSearch::closest(const PointRows& points, const ClosestOptions& optio
   checkFinite(points, "points", scale);
   checkDistance(options.max_distance);
   if (options.facing.rows() > 0) {
-    checkRows(options.facing, points.rows(), "facing");
+    checkRows("facing", options.facing.rows(), points.rows(), "points");
     checkDirections(options.facing, "facing");
   }
   checkAngle(options.max_angle);

@@ -17,9 +17,9 @@ namespace limitsurf {
 namespace {
 
 void checkFrames(const ShadingFrames& frames, Eigen::Index rows) {
-  checkRows("normals", frames.normal.rows(), rows);
-  checkRows("tangents", frames.tangent.rows(), rows);
-  checkRows("signs", frames.sign.rows(), rows);
+  checkRows("normals", frames.normal.rows(), rows, "vectors");
+  checkRows("tangents", frames.tangent.rows(), rows, "vectors");
+  checkRows("signs", frames.sign.rows(), rows, "vectors");
 }
 
 /// Columns tangent, bitangent, normal.

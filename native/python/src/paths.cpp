@@ -9,6 +9,7 @@
 #include "limitsurf/path/laid_path.h"
 #include "limitsurf/path/path_fit.h"
 #include "limitsurf/path/path_smoothing.h"
+#include "limitsurf/row_check.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -120,8 +121,7 @@ SpaceCurves spaceCurves(const py::object& points, const py::object& left, const 
     curves.after = rowsOfThree(right, "handle_right");
     if (curves.before.rows() == 0 && curves.after.rows() == 0 && curves.points.rows() > 0) {
       // For the library such curves have no handles.
-      throw std::invalid_argument("handle_left has 0 rows, but points has " +
-                                  std::to_string(curves.points.rows()));
+      checkRows("handle_left", 0, curves.points.rows(), "points");
     }
   }
   if (offsets.is_none()) {

@@ -2,10 +2,10 @@
 
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include "batches.h"
 #include "docstrings.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/search/checks.h"
 #include "numbers.h"
 #include "progress.h"
@@ -41,14 +41,6 @@ class SearchRows {
   Eigen::Index count_;
 };
 
-void requireAsMany(Eigen::Index rows, const char* name, Eigen::Index others,
-                   const char* others_name) {
-  if (rows != others) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows) + " rows and " +
-                                others_name + " " + std::to_string(others));
-  }
-}
-
 /// A direction for each point, from one for each, one for all, or none.
 Points facingOf(const py::object& facing, Eigen::Index points) {
   if (facing.is_none()) {
@@ -59,7 +51,7 @@ Points facingOf(const py::object& facing, Eigen::Index points) {
     return Eigen::Map<const Eigen::RowVector3d>(array.data()).replicate(points, 1);
   }
   const Points rows = rowsOfThree(facing, "facing");
-  requireAsMany(rows.rows(), "facing", points, "points");
+  checkRows("facing", rows.rows(), points, "points");
   return rows;
 }
 
@@ -146,7 +138,7 @@ py::object closest(const SharedSurface& shared, const py::object& points, double
 struct Rays {
   Rays(const py::object& from, const py::object& along, double max_distance)
       : origins(from, "origins"), directions(along, "directions") {
-    requireAsMany(directions.count(), "directions", origins.count(), "origins");
+    checkRows("directions", directions.count(), origins.count(), "origins");
     checkFinite(origins.all(), "origins");
     checkDirections(directions.all(), "directions");
     checkDistance(max_distance);

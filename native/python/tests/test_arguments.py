@@ -523,6 +523,18 @@ def test_numbers_are_quoted_as_they_were_written(call, wrong):
             "cut_offsets must .* the number of rows of cut_points, 3$",
         ),
         (
+            lambda: SURFACE.closest(POINTS[:2], facing=UP),
+            "facing has 3 rows; expected 2, as many as points has$",
+        ),
+        (
+            lambda: SURFACE.ray_cast(UP[:1], UP[:2]),
+            "directions has 2 rows; expected 1, as many as origins has$",
+        ),
+        (
+            lambda: SURFACE.strand_poser(FACE, UV, UP[:1], [np.eye(3)] * 3),
+            "rest_roots has 1 row; expected 3, as many as face has$",
+        ),
+        (
             lambda: SURFACE.closest(POINTS, facing=[0, 0, 0]),
             r"row 0: facing is \(0, 0, 0\), which has no length",
         ),
@@ -532,7 +544,7 @@ def test_numbers_are_quoted_as_they_were_written(call, wrong):
         ),
         (
             lambda: ls.into_shading_frames(UP, UP[:1], UP, [1] * 3),
-            "normals has 1 rows; expected 3",
+            "normals has 1 row; expected 3, as many as vectors has$",
         ),
     ],
 )
@@ -574,7 +586,9 @@ def test_children_of_no_guides():
     assert ls.child_strands([], [], [], [], [], []).shape == (0, 2, 3)
     with pytest.raises(ValueError, match="^guide_points has 1 points for each guide; expected 2"):
         ls.child_strands([[[0, 0, 0]]], UP[:1], [], [], [], [])
-    with pytest.raises(ValueError, match="^guide_normals has 0 rows; expected 1$"):
+    with pytest.raises(
+        ValueError, match="^guide_normals has 0 rows; expected 1, as many as guide_points has$"
+    ):
         ls.child_strands([POINTS], [], [], [], [], [])
 
 

@@ -151,9 +151,15 @@ def test_empty_arrays():
     [
         (lambda f: ls.quaternions(f[0]), r"rotations has shape \(3, 3\); expected \(n, 3, 3\)"),
         (lambda f: ls.frames_in_world(f, np.eye(4)), r"has shape \(4, 4\); expected \(3"),
-        (lambda f: ls.leaning(f, np.zeros((2, 2))), "angles has 2 rows; expected 5"),
+        (
+            lambda f: ls.leaning(f, np.zeros((2, 2))),
+            "angles has 2 rows; expected 5, as many as frames has",
+        ),
         (lambda f: ls.leaning(f, np.zeros((5, 3))), r"angles has shape \(5, 3\); expected"),
-        (lambda f: ls.straight_strands(f[:, 0], f[:4, 0], 2), "along has 4 rows; expected 5"),
+        (
+            lambda f: ls.straight_strands(f[:, 0], f[:4, 0], 2),
+            "along has 4 rows; expected 5, as many as roots has",
+        ),
         (lambda f: ls.straight_strands(f[:, 0], f[:, 0], 0), "points is 0; expected 1 or more"),
     ],
 )

@@ -197,5 +197,5 @@ def test_child_strands_refuse():
         ls.child_strands(GUIDES, UP, [[-1]], [[0.5]], *ones)
     with pytest.raises(ValueError, match=r"expected \(n, k\)"):
         ls.child_strands(GUIDES, UP, [[0]], [[1, 0]], *ones)
-    with pytest.raises(ValueError, match="guide_normals has 1 rows; expected 2"):
+    with pytest.raises(ValueError, match="guide_normals has 1 row; expected 2"):
         ls.child_strands(GUIDES, UP[:1], [[0]], [[1]], *ones)

@@ -134,15 +134,15 @@ def test_long_lines_end_in_whole_characters():
         ),
         (
             lambda: SURFACE.lay_path(POINTS[:2], 0.1, handle_left=POINTS, handle_right=POINTS),
-            "handle_left has 3 rows, but points has 2",
+            "handle_left has 3 rows; expected 2, as many as points has",
         ),
         (
             lambda: SURFACE.lay_path(POINTS, 0.1, handle_left=POINTS, handle_right=POINTS[:1]),
-            "handle_right has 1 rows, but points has 3",
+            "handle_right has 1 row; expected 3, as many as points has",
         ),
         (
             lambda: SURFACE.lay_path(POINTS, 0.1, handle_left=[], handle_right=[]),
-            "handle_left has 0 rows, but points has 3",
+            "handle_left has 0 rows; expected 3, as many as points has",
         ),
         (lambda: BLANK_MESH.__setstate__({}), "no state of a ControlMesh: {} is no tuple"),
         (lambda: BLANK_SURFACE.__setstate__(3), "no state of a LimitSurface: 3 is no tuple"),

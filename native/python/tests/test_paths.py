@@ -353,7 +353,7 @@ def test_errors_name_what_is_wrong(flat):
     assert "max_step is 0" in refusal(flat.lay_path, line, 1, max_step=0)
     assert "row 1: points is (nan" in refusal(flat.lay_path, [[0, 0, 0], [np.nan, 0, 0]], 1)
     assert "together" in refusal(flat.lay_path, line, 1, handle_left=line)
-    assert "handle_right has 1 rows, but points has 2" in refusal(
+    assert "handle_right has 1 row; expected 2, as many as points has" in refusal(
         flat.lay_path, line, 1, handle_left=line, handle_right=line[:1]
     )
     assert "offsets[2] is 1" in refusal(flat.lay_path, line, 1, offsets=[0, 1, 1, 2])
@@ -362,7 +362,7 @@ def test_errors_name_what_is_wrong(flat):
     path = flat.lay_path(line, 1e-3)
     assert "kind is 'nurbs'" in refusal(flat.fit_path, path.face, path.uv, 1, kind="nurbs")
     assert "1 points; at least 2" in refusal(flat.fit_path, path.face[:1], path.uv[:1], 1)
-    assert "values has 1 rows" in refusal(flat.fit_path, path.face, path.uv, 1, values=[1])
+    assert "values has 1 row" in refusal(flat.fit_path, path.face, path.uv, 1, values=[1])
     assert "weights[1] is 2" in refusal(flat.smooth_path, path.face, path.uv, [0, 2])
     assert "iterations is -1" in refusal(flat.smooth_path, path.face, path.uv, [0, 1], -1)
     for count in (1, 10_000_001, 2**31 - 1):

@@ -65,12 +65,24 @@ def test_strands_move_with_their_roots(dtype):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda p, t: ls.shortest_turns(p, p[:2]), "target has 2 rows; expected 3"),
+        (
+            lambda p, t: ls.shortest_turns(p, p[:2]),
+            "target has 2 rows; expected 3, as many as source has",
+        ),
         (lambda p, t: ls.shortest_turns(p[:, :2], p), r"source has shape \(3, 2\)"),
         (lambda p, t: ls.rotation_matrices(p), r"quaternions has shape \(3, 3\)"),
-        (lambda p, t: ls.move_strands(p, None, p[:2], p, t), "roots has 2 rows; expected 3"),
-        (lambda p, t: ls.move_strands(p, None, p, p[:2], t), "new_roots has 2 rows; expected 3"),
-        (lambda p, t: ls.move_strands(p[:2], None, p, p, t), "points has 2 rows; expected 3"),
+        (
+            lambda p, t: ls.move_strands(p, None, p[:2], p, t),
+            "roots has 2 rows; expected 3, as many as turns has",
+        ),
+        (
+            lambda p, t: ls.move_strands(p, None, p, p[:2], t),
+            "new_roots has 2 rows; expected 3, as many as turns has",
+        ),
+        (
+            lambda p, t: ls.move_strands(p[:2], None, p, p, t),
+            "points has 2 rows; expected 3, as many as turns has",
+        ),
         (lambda p, t: ls.move_strands(p, [0, 3], p, p, t), "2 offsets for 3 strands; expected 4"),
         (lambda p, t: ls.move_strands(p, [0, 2, 1, 3], p, p, t), r"offsets\[2\] is 1, less than"),
         (lambda p, t: ls.move_strands(p, [1, 2, 2, 3], p, p, t), r"offsets\[0\] is 1; expected 0"),

@@ -122,7 +122,7 @@ TEST(EvaluationArrays, OfAnotherSizeAreRefused) {
   const EvaluationArrays<double> too_short{{short_one.data(), 1}};
   EXPECT_EQ(
       errorOf<std::invalid_argument>([&] { surface.evaluate(at, Derivatives::none, too_short); }),
-      "position has 1 rows; expected 2");
+      "position has 1 row; expected 2");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/hit_evaluation.h"
@@ -308,7 +309,7 @@ void checkRays(const PointRows& origins, const PointRows& directions, double max
                double scale, int threads) {
   checkThreads(threads);
   checkFinite(origins, "origins", scale);
-  checkRows(directions, origins.rows(), "directions");
+  checkRows("directions", directions.rows(), origins.rows(), "origins");
   checkDirections(directions, "directions");
   checkDistance(max_distance);
 }

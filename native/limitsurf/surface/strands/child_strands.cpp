@@ -73,8 +73,9 @@ void check(const GuideStrands& guides, const ChildRoots& children) {
                                 " points for each guide; expected 2 or more");
   }
   const Eigen::Index count = guides.normals.rows(), rows = children.position.rows();
-  checkRows("guide_normals", count, guides.points.rows() / guides.points_per_strand);
-  checkRows("normals", children.normal.rows(), rows);
+  checkRows("guide_normals", count, guides.points.rows() / guides.points_per_strand,
+            "guide_points");
+  checkRows("normals", children.normal.rows(), rows, "roots");
   const auto size = static_cast<std::size_t>(rows) * static_cast<std::size_t>(children.guides);
   if (children.guide.size() != size || children.weight.size() != size) {
     throw std::invalid_argument("guide and weight need a row for each child, and as many columns");

@@ -92,7 +92,7 @@ Rotations framesInWorld(const Eigen::Ref<const Rotations>& frames, const Eigen::
 
 Points leaning(const Eigen::Ref<const Rotations>& frames, const Eigen::Ref<const Pairs>& angles,
                int threads) {
-  checkRows("angles", angles.rows(), frames.rows());
+  checkRows("angles", angles.rows(), frames.rows(), "frames");
   Points result(frames.rows(), 3);
   forEachRow(frames.rows(), threads, [&](Eigen::Index row) {
     const Frame frame(frames.row(row).data());
@@ -115,7 +115,7 @@ FloatPoints straightStrands(const Eigen::Ref<const Points>& roots,
 
 void straightStrands(const Eigen::Ref<const Points>& roots, const Eigen::Ref<const Points>& along,
                      int points, Eigen::Map<FloatPoints> strands, int threads) {
-  checkRows("along", along.rows(), roots.rows());
+  checkRows("along", along.rows(), roots.rows(), "roots");
   if (points < 1) {
     throw std::invalid_argument("points is " + std::to_string(points) + "; expected 1 or more");
   }

@@ -280,8 +280,8 @@ StrandPoser::StrandPoser(const LimitSurface& surface, Span<Location> at,
     : data_(std::make_unique<Data>(*surface.data_, at.size(), offsets)) {
   checkThreads(threads);
   const auto count = static_cast<std::int64_t>(at.size());
-  checkRows("rest_roots", rest_roots.rows(), count);
-  checkRows("rest_rotations", rest_rotations.rows(), count);
+  checkRows("rest_roots", rest_roots.rows(), count, "face");
+  checkRows("rest_rotations", rest_rotations.rows(), count, "face");
   if (!offsets.empty()) {
     checkOffsets(offsets, at.size());
   }

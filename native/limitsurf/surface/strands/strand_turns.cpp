@@ -52,7 +52,7 @@ Eigen::Matrix3d shortestTurn(const Vector3& from, const Vector3& to) {
 }
 
 Rotations shortestTurns(const Points& from, const Points& to) {
-  checkRows("target", to.rows(), from.rows());
+  checkRows("target", to.rows(), from.rows(), "source");
   Rotations turns(from.rows(), 9);
   InterruptionStride stride;
   for (Eigen::Index row = 0; row < from.rows(); ++row) {
@@ -80,12 +80,13 @@ Rotations rotationsOf(const Quaternions& quaternions) {
 Points movedStrands(const Points& points, const std::vector<std::int64_t>& offsets,
                     const Points& from, const Points& to, const Rotations& turns) {
   const Eigen::Index strands = turns.rows();
-  checkRows("roots", from.rows(), strands);
-  checkRows("new_roots", to.rows(), strands);
+  checkRows("roots", from.rows(), strands, "turns");
+  checkRows("new_roots", to.rows(), strands, "turns");
   if (!offsets.empty()) {
     checkOffsets(offsets, static_cast<std::size_t>(strands));
   }
-  checkRows("points", points.rows(), offsets.empty() ? strands : offsets.back());
+  checkRows("points", points.rows(), offsets.empty() ? strands : offsets.back(),
+            offsets.empty() ? "turns" : nullptr);
   Points moved(points.rows(), 3);
   InterruptionStride stride;
   for (Eigen::Index strand = 0; strand < strands; ++strand) {
