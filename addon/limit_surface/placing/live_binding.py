@@ -99,7 +99,7 @@ class LiveRequest:
                 modifier = groups.add_modifier(ob, FOLLOW_LIVE, place=places.get(ob, 0))
             groups.set_input(modifier, SURFACE, self._surface)
         if self._by_nodes:
-            # they follow live already, so that what is removed with their nodes is not needed
+            # only now: a carrier that follows nothing and carries nothing would be removed
             self._unbinding.write()
         following.ensure_capture(self._surface)
         live.read_anew(self._surface)

@@ -362,7 +362,7 @@ def test_errors_name_what_is_wrong(flat):
     path = flat.lay_path(line, 1e-3)
     assert "kind is 'nurbs'" in refusal(flat.fit_path, path.face, path.uv, 1, kind="nurbs")
     assert "1 points; at least 2" in refusal(flat.fit_path, path.face[:1], path.uv[:1], 1)
-    assert "values has 1 row" in refusal(flat.fit_path, path.face, path.uv, 1, values=[1])
+    assert "values has 1 row; expected" in refusal(flat.fit_path, path.face, path.uv, 1, values=[1])
     assert "weights[1] is 2" in refusal(flat.smooth_path, path.face, path.uv, [0, 2])
     assert "iterations is -1" in refusal(flat.smooth_path, path.face, path.uv, [0, 1], -1)
     for count in (1, 10_000_001, 2**31 - 1):
