@@ -173,7 +173,7 @@ def draw_opening() -> None:
     for name in OPENED:
         plot.plot(faces, 1e9 * np.array(seconds[name]) / faces, marker="o", label=name)
     plot.set(xlabel="faces", ylabel="ns a face, all threads together", xscale="log", ylim=0)
-    plot.legend()
+    plot.legend(bbox_to_anchor=(0.5, 1), loc="lower center")
     save(figure, IMAGES / "benchmark_opening.png")
 
 
@@ -196,10 +196,15 @@ def draw_threads(found: dict[str, dict[int, float]]) -> None:
 
 def machine() -> str:
     cpu = platform.processor() or platform.machine()
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            cpu = line.split(":", 1)[1].strip()
-            break
+    about = dict(
+        line.split(":", 1) for line in Path("/proc/cpuinfo").read_text().splitlines() if line
+    )
+    known = {name.strip(): value.strip() for name, value in about.items()}
+    if "model name" in known:
+        # The name of a virtual machine's processor may be that of many generations.
+        flags = known["flags"].split()
+        vectors = "AVX-512" if "avx512f" in flags else "AVX2" if "avx2" in flags else "no AVX2"
+        cpu = f"{known['model name']} (family {known['cpu family']}, {vectors})"
     compiler = subprocess.run(["c++", "--version"], stdout=subprocess.PIPE, text=True, check=True)
     return (
         f"The results are for limitsurf {limitsurf.__version__}, "

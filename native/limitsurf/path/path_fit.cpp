@@ -326,7 +326,7 @@ PathFit fitPath(const LimitSurface& surface, const SurfaceSearch& search,
   }
   const auto rows = static_cast<Eigen::Index>(path.size());
   if (options.values.size() != 0) {
-    checkRows("values", options.values.size(), rows);
+    checkRows("values", options.values.size(), rows, "face");
   }
   for (Eigen::Index row = 0; row < options.values.size(); ++row) {
     if (!std::isfinite(options.values[row])) {

@@ -21,7 +21,7 @@ void checkPath(std::size_t points) {
 }
 
 void checkWeights(const Eigen::VectorXd& weights, std::size_t points) {
-  checkRows("weights", weights.size(), static_cast<Eigen::Index>(points));
+  checkRows("weights", weights.size(), static_cast<Eigen::Index>(points), "face");
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     if (!(weights[i] >= 0 && weights[i] <= 1)) {
       throw std::invalid_argument("weights[" + std::to_string(i) + "] is " +

@@ -535,6 +535,14 @@ def test_numbers_are_quoted_as_they_were_written(call, wrong):
             "rest_roots has 1 row; expected 3, as many as face has$",
         ),
         (
+            lambda: SURFACE.smooth_path(FACE[:2], UV[:2], [1, 0, 1]),
+            "weights has 3 rows; expected 2, as many as face has$",
+        ),
+        (
+            lambda: SURFACE.fit_path(FACE[:2], UV[:2], 0.1, values=[1, 0, 1]),
+            "values has 3 rows; expected 2, as many as face has$",
+        ),
+        (
             lambda: SURFACE.closest(POINTS, facing=[0, 0, 0]),
             r"row 0: facing is \(0, 0, 0\), which has no length",
         ),
