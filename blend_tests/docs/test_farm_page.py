@@ -13,7 +13,7 @@ import scenes
 from bakes import blender_executable, contents
 from farm_software import slurm
 from limit_surface.bake_frames import arguments, command
-from processes import ROOT
+from processes import ROOT, run_python
 
 PAGE = pages.text("farm")
 
@@ -70,7 +70,8 @@ def test_the_command(shot):
 def test_examples_in_python(shot):
     loading, baking = pages.examples(PAGE)
     known = {}
-    exec(baking, known)
+    (shot / "addon").symlink_to(ROOT / "addon")
+    run_python(baking)
     assert caches(shot, ".npz")
     exec(loading, known)
     bpy.context.scene.frame_set(24)
