@@ -110,7 +110,7 @@ def test_changes_that_are_not_saved(shot, capfd, monkeypatch):
     assert not sources._has_unsaved_changes()
     monkeypatch.setattr(sources, "_has_unsaved_changes", lambda: True)
     assert bake(shot, "Cube", options=OVERWRITE) == command.BAD_ARGUMENTS
-    assert "save the .blend file first" in capfd.readouterr().err
+    assert "changes that are not saved. Save it first" in capfd.readouterr().err
     assert heights(shot) == [0, 0, 0]
 
 
@@ -128,7 +128,7 @@ def test_files_that_were_never_saved_do_not_mix(tmp_path, capfd):
     assert bake(folder, "Cube", frames="3-4", options=NPZ) == command.BAD_ARGUMENTS
     err = capfd.readouterr().err
     assert f"{folder} holds a bake" in err
-    assert "never saved: save the file first, and give another folder" in err
+    assert "never saved: save it first, and give another folder" in err
     save(tmp_path / "shot.blend", 7)
     assert bake(folder, "Cube", frames="3-4", options=NPZ) == command.BAD_ARGUMENTS
     err = capfd.readouterr().err

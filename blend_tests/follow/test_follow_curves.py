@@ -275,7 +275,7 @@ def test_a_curve_goes_back_to_rest():
     bpy.context.scene.frame_set(30)
     ob.select_set(False)
     scenes.activate(made)
-    with pytest.raises(RuntimeError, match="Curve is a Curve object, whose shape"):
+    with pytest.raises(RuntimeError, match="Curve is a Curve object, which cannot store the shape"):
         bpy.ops.object.limit_unbind(shape="SHOWN")
     assert bpy.ops.object.limit_unbind(shape="REST") == {"FINISHED"}
     assert set(bpy.data.objects) == objects

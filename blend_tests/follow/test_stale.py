@@ -55,23 +55,23 @@ BREAKS = {
     ),
     "modifier": (
         lambda _ob, hair: hair.modifiers.clear(),
-        "Limit Hair has lost the modifier by which it followed",
+        "The modifier by which Limit Hair followed, or its node group, was deleted",
     ),
     "group": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.FOLLOW_HAIR_GROUP]),
-        "Limit Hair has lost the modifier by which it followed",
+        "The modifier by which Limit Hair followed, or its node group, was deleted",
     ),
     "group within": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.SAMPLE_TILE_GROUP]),
-        "Limit Hair has lost a node group",
+        "A node group that Limit Hair needs was deleted",
     ),
     "group of tables": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.TILES_GROUP]),
-        "Limit Tiles of Holes has lost a node group",
+        "A node group that Limit Tiles of Holes needs was deleted",
     ),
     "group of the surface": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.CAPTURE_GROUP]),
-        "Holes has lost a node group",
+        "A node group that Holes needs was deleted",
     ),
     "capture": (
         lambda ob, _hair: remove_capture(ob),

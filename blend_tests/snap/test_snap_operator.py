@@ -143,7 +143,7 @@ def refused(match, **properties):
 
 def test_needs_an_active_mesh_and_something_else():
     assert not bpy.ops.object.limit_snap.poll()
-    refused("Make the mesh to snap to active")
+    refused("Select the objects to snap, and then the mesh as the active object")
     scenes.cross()
     refused("Select the objects to snap in addition to the active mesh")
     add_object((0, 0, 1))

@@ -54,15 +54,15 @@ class FrameFiles:
             if has_frames and not has_record:
                 if self._frames() - replaced:
                     raise RefusalError(
-                        f"{self._folder} holds frames but no {RECORD}, so that nobody knows from "
-                        "which file they come: delete the frames, or give another folder"
+                        f"{self._folder} holds frames but no {RECORD}, which would say from which "
+                        "file they come: delete the frames, or give another folder"
                     )
                 self._replace(record, replaced, True)
                 return
             there = self._claim(record)
             if not isinstance(there, dict):
                 raise RefusalError(
-                    f"{self._record} is damaged, so that nobody knows from which file the frames "
+                    f"{self._record} is damaged, so it cannot be known from which file the frames "
                     f"in {self._folder} come: delete {RECORD} and the frames, or give another "
                     "folder"
                 )
@@ -80,8 +80,8 @@ class FrameFiles:
             raise RefusalError(f"cannot write to {self._folder}: {error.strerror}") from error
         if differ == {CONTENTS} and not record[FILE]:
             raise RefusalError(
-                f"{self._folder} holds a bake, and nobody can tell whether it is one of the open "
-                "file, which was never saved: save the file first, and give another folder"
+                f"{self._folder} holds a bake. Whether it is one of the open file cannot be known, "
+                "because this file was never saved: save it first, and give another folder"
             )
         if differ:
             reasons = "; ".join(_difference(key, there, record) for key in sorted(differ))

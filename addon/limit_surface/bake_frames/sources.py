@@ -30,8 +30,8 @@ def check() -> None:
             )
     if _has_unsaved_changes():
         raise RefusalError(
-            "the .blend file has changes that are not saved, which nobody could tell from the "
-            "files later: save the .blend file first"
+            "the .blend file has changes that are not saved. Save it first: the bake records which "
+            "file its frames come from, by a checksum of the saved file"
         )
 
 

@@ -319,4 +319,4 @@ def _nothing(active: bpy.types.Object | None) -> str:
     """Returns what to do where the active object is no hair on a surface."""
     if active is not None and active.type == "CURVES" and followers.is_placed(active):
         return followers.why_not_placed(active)
-    return "Make hair that stands on a mesh active: its strands become the guides"
+    return "Select hair that stands on a mesh as the active object. Its strands become the guides"

@@ -150,7 +150,10 @@ def check_drawable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
             "it a single-user copy first"
         )
     if data.shape_keys:
-        raise RefusalError(f"{ob.name} has shape keys, which keep the number of its points")
+        raise RefusalError(
+            f"{ob.name} has shape keys, so no points can be added or removed: delete the shape "
+            "keys first"
+        )
     if data.dimensions == "2D":
         raise RefusalError(f"{ob.name} is a 2D curve, which stays in its plane: make it 3D")
     if _is_bound(ob):

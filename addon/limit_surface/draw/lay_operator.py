@@ -18,7 +18,7 @@ from . import curve_object, properties, result, splines
 from .fitting import Fit, Spline
 from .ground import Ground
 
-NOTHING = "Select curves, and make the mesh to lay them on active"
+NOTHING = "Select the curves, and then the mesh as the active object"
 
 
 class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.types.Operator):

@@ -50,7 +50,10 @@ def find(context: bpy.types.Context) -> Subject:
     elif active is not None and active.type == "CURVE":
         surface, edited = surface_of(active), active
     if surface is None:
-        raise RefusalError("Make the mesh to draw on active, or a curve that was drawn on a mesh")
+        raise RefusalError(
+            "Select the mesh on which you want to draw, or a curve that was drawn on a mesh. It "
+            "must be the active object"
+        )
     if not surface.visible_get(view_layer=context.view_layer):
         raise RefusalError(f"{surface.name} is hidden: show it to draw on it")
     if edited is not None:

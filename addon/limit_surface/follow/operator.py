@@ -41,15 +41,15 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
             (
                 "NODES",
                 "Nodes",
-                "Geometry Nodes move things. Files play in every Blender, also without this "
-                "extension",
+                "Geometry Nodes move things. This also works where this extension is not installed",
                 0,
             ),
             (
                 "LIVE",
                 "Live",
                 "This extension moves things in each frame. It is faster for very many "
-                "strands, and also follows animated creases and changes of topology",
+                "strands. Creases may be animated, and modifiers before the subdivision may add "
+                "and remove other faces than those on which things stand",
                 1,
             ),
         ),

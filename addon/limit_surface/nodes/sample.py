@@ -17,8 +17,8 @@ _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 TILE = Socket(
     "Tile",
     "Int",
-    "Number of one of the tiles of which the limit surface consists here, counted from 0: the "
-    "output Tile of Locate Limit Tile",
+    "Number of the tile, counted from 0: connect the output Tile of Locate Limit Tile. A tile is a "
+    "small part of the limit surface",
 )
 TILE_UV = Socket(
     "Tile UV",

@@ -24,15 +24,15 @@ _AUTO = (
 _NODES = (
     "NODES",
     "Nodes",
-    "Follow by Geometry Nodes. This works in every Blender, also without this extension",
+    "Follow by Geometry Nodes. This also works where this extension is not installed",
     1,
 )
 _NONE = ("NONE", "None", "Do not follow: stay in place when the mesh deforms", 2)
 _LIVE = (
     "LIVE",
     "Live",
-    "Let this extension move the object in each frame. It is faster for very many strands, "
-    "and also follows animated creases",
+    "Let this extension move the object in each frame. This is faster for very many strands, and "
+    "creases may be animated",
     3,
 )
 _DESCRIPTION = "How the new object follows the surface when its mesh deforms"

@@ -92,9 +92,10 @@ class State:
         remedy = ids.FOLLOW if self.followers or self.strays else ids.SAMPLE_TABLES
         for ob in (self.surface, *self.followers, *_tables_of(self.followers)):
             if mending.is_broken(ob):
-                yield Trouble(f"{ob.name} has lost a node group", remedy)
+                yield Trouble(f"A node group that {ob.name} needs was deleted", remedy)
         for ob in self.strays:
-            yield Trouble(f"{ob.name} has lost the modifier by which it followed", ids.FOLLOW)
+            text = f"The modifier by which {ob.name} followed, or its node group, was deleted"
+            yield Trouble(text, ids.FOLLOW)
         for ob in self.followers:
             table = groups.get_input(modifier_of(ob), TILES)
             of = tables.surface_of(table) if table else None
@@ -107,7 +108,8 @@ class State:
             yield Trouble(text, remedy)
         if self.samples is not None:
             if mending.is_broken(self.samples):
-                yield Trouble(f"{self.samples.name} has lost a node group", ids.SAMPLE_TABLES)
+                text = f"A node group that {self.samples.name} needs was deleted"
+                yield Trouble(text, ids.SAMPLE_TABLES)
             if tables.points_of(self.samples) is None:
                 text = f"The hidden table of points that {self.samples.name} reads was deleted"
                 yield Trouble(text, ids.SAMPLE_TABLES)

@@ -82,7 +82,7 @@ class Edits:
         if best is None:
             raise RefusalError(
                 f"{self._ob.name} was edited in frame {written.frame:g}, and {surface.name} has "
-                "moved since then: go to that frame, so that the edit can be taken up"
+                "moved since then: go to that frame, because only there the edit can be applied"
             )
         return best
 

@@ -58,8 +58,8 @@ def check_uv(uv: np.ndarray, called: str) -> None:
     if not (uv.min(initial=0) >= 0 and uv.max(initial=0) <= 1):
         u, v = uv[(~((uv >= 0) & (uv <= 1))).any(axis=1).argmax()]
         raise RefusalError(
-            f"{called} has u = {u:g} and v = {v:g}, which must be 0 to 1: somebody has changed the "
-            f"attribute {ids.UV}"
+            f"{called} has u = {u:g} and v = {v:g}, which must be 0 to 1: the attribute {ids.UV} "
+            "was changed"
         )
 
 

@@ -103,8 +103,8 @@ class Unbinding:
 def _check_own_data(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
         raise RefusalError(
-            f"{ob.name} is a Curve object, whose shape in this frame only its nodes know: choose "
-            "the shape At Rest, or convert it to Curves first"
+            f"{ob.name} is a Curve object, which cannot store the shape that nodes give it in this "
+            "frame: choose the shape At Rest, or convert it to Curves first"
         )
     others = [other.name for other in followers.sharers(ob)]
     if others:

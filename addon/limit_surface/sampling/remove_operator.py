@@ -8,7 +8,7 @@ from ..errors import RefusalError
 from ..placing import all_tiles
 from ..tasks import polling
 
-_NOTHING = "Make the mesh whose tables are to be removed active"
+_NOTHING = "Select the mesh whose tables you want to remove. It must be the active object"
 
 
 class OBJECT_OT_limit_sample_remove(bpy.types.Operator):

@@ -285,7 +285,7 @@ def _obstacle(context: bpy.types.Context) -> str:
     target = find_target(context)
     if context.mode == "OBJECT":
         if target is None or target.type != "MESH":
-            return "Make the mesh to snap to active, and select the objects to snap as well"
+            return "Select the objects to snap, and then the mesh as the active object"
         if all(ob == target for ob in context.selected_objects):
             return "Select the objects to snap in addition to the active mesh"
     elif target is None:
