@@ -55,11 +55,13 @@ BREAKS = {
     ),
     "modifier": (
         lambda _ob, hair: hair.modifiers.clear(),
-        "The modifier by which Limit Hair followed, or its node group, was deleted",
+        "The modifier by which Limit Hair followed was deleted or applied, or its node group was "
+        "deleted",
     ),
     "group": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.FOLLOW_HAIR_GROUP]),
-        "The modifier by which Limit Hair followed, or its node group, was deleted",
+        "The modifier by which Limit Hair followed was deleted or applied, or its node group was "
+        "deleted",
     ),
     "group within": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.SAMPLE_TILE_GROUP]),

@@ -16,6 +16,7 @@ from ..placing.followers import (
     live_modifier_of,
     modifier_of,
     own_or_all,
+    strays_of,
     surface_of,
     was_bound,
 )
@@ -33,11 +34,11 @@ def selected(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def chosen_followers(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Returns the selected objects that follow a surface, or where there are none, all that follow
-    the active mesh.
+    """Returns the selected objects that follow a surface, or have lost the modifier by which they
+    did; where there are none, all such objects of the active mesh.
     """
     chosen = selected(context)
-    found = [ob for ob in chosen if modifier_of(ob) or live_modifier_of(ob)]
+    found = [ob for ob in chosen if was_bound(ob) or live_modifier_of(ob)]
     active = context.active_object
     if any(live_children.modifier_of(ob) for ob in chosen):
         return found
@@ -53,6 +54,7 @@ def _unbound_with(surface: bpy.types.Object) -> list[bpy.types.Object]:
     everything = [
         *followers_of(surface),
         *live_followers_of(surface),
+        *strays_of(surface),
         *live_children.on_surface(surface),
     ]
     own = [ob for ob in everything if is_own(ob)]

@@ -94,7 +94,10 @@ class State:
             if mending.is_broken(ob):
                 yield Trouble(f"A node group that {ob.name} needs was deleted", remedy)
         for ob in self.strays:
-            text = f"The modifier by which {ob.name} followed, or its node group, was deleted"
+            text = (
+                f"The modifier by which {ob.name} followed was deleted or applied, or its node "
+                "group was deleted"
+            )
             yield Trouble(text, ids.FOLLOW)
         for ob in self.followers:
             table = groups.get_input(modifier_of(ob), TILES)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hair and points from elsewhere: they are bound at their closest points on a surface, and keep
-their distance from it. Nothing moves.
+their distance from it. Nothing moves. The same holds for things whose modifier of following was
+applied, which keep their places.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import following
 from .added_vertices import AddedVertices
+from .applied_shapes import is_stray, rows_as_posed
 from .posed_surface import Places as PosedPlaces
 from .posed_surface import PosedSurface, at_closest
 from .relocation import Elements, Relocation
@@ -31,13 +33,14 @@ def relocations(
     surface: bpy.types.Object,
     depsgraph: bpy.types.Depsgraph,
 ) -> Pieces:
-    """Returns the places (list[Relocation]) of those strands and points that have none yet. Raises
-    RefusalError where the others were bound before the faces of the surface changed.
+    """Returns the places (list[Relocation]) of those strands and points that have none yet, and new
+    places at rest for things whose modifier of following was applied. Raises RefusalError where
+    the others were bound before the faces of the surface changed.
     """
     waiting: dict[bpy.types.ID, Elements] = {}
     for ob in things:
         elements = Elements(ob)
-        if not elements.has_place.all():
+        if not elements.has_place.all() or is_stray(ob):
             waiting.setdefault(ob.data, elements)
     if not waiting:
         return []
@@ -48,13 +51,29 @@ def relocations(
         if elements.has_place.any():
             following.check_holds(elements.ob, surface, following.signature(posed.cage))
             elements.places.check(posed.in_object.face_count, surface.name)
+        relocation = Relocation(elements)
         rows = np.flatnonzero(~elements.has_place)
-        added, points = AddedVertices(elements, posed), elements.first_points()
-        added.put_into(points)
-        relocation = yield from bound_at_closest(elements, posed, rows, points=points)
-        added.put_back(relocation)
-        found.append(relocation)
+        if len(rows):
+            added, points = AddedVertices(elements, posed), elements.first_points()
+            added.put_into(points)
+            relocation = yield from bound_at_closest(elements, posed, rows, points=points)
+            added.put_back(relocation)
+        if is_stray(elements.ob):
+            yield from _leave_as_posed(relocation, posed)
+        if relocation.values:
+            found.append(relocation)
     return found
+
+
+def _leave_as_posed(relocation: Relocation, posed: PosedSurface) -> Pieces:
+    """Makes the shape that the surface gives elements in this frame their shape at rest, if it is
+    theirs.
+    """
+    elements = relocation.elements
+    rows = yield from rows_as_posed(elements, posed)
+    if len(rows):
+        face, uv = elements.read(ids.FACE)[rows], elements.read(ids.UV)[rows]
+        yield from put_places(relocation, posed, rows, face, uv)
 
 
 def bound_at_closest(

@@ -19,6 +19,7 @@ from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import curve_points, following, live_binding, seals
+from .applied_shapes import is_stray, rows_as_posed
 from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
 from .followers import bound_to, holder_of, is_own, live_modifier_of
 from .newcomers import bound_at_closest, put_places
@@ -131,6 +132,7 @@ class Rebinding:
     def compute(self, context: bpy.types.Context) -> Pieces:
         self._relocations = []
         for elements in self._elements:
+            yield from _check_not_applied(elements, self._posed, self._signature)
             relocation = yield from _relocation(elements, self._posed, self._find)
             self._relocations.append(relocation)
         self._relocations_of_live = [r for r in self._relocations if r.elements.ob in self._live]
@@ -167,6 +169,20 @@ class Rebinding:
             self._find.reason,
             self._overridden,
         )
+
+
+def _check_not_applied(elements: Elements, posed: PosedSurface, signature: str) -> Pieces:
+    """Raises RefusalError for something that would be moved a second time, because its modifier was
+    applied in this frame.
+    """
+    ob = elements.ob
+    if is_stray(ob) and following.holds(elements.data, signature):
+        rows = yield from rows_as_posed(elements, posed)
+        if len(rows):
+            raise RefusalError(
+                f"The modifier by which {ob.name} followed was applied in this frame: run Follow "
+                "Limit Surface instead, which binds it as it is now"
+            )
 
 
 def _relocation(elements: Elements, posed: PosedSurface, find: Finder) -> Pieces:

@@ -19,8 +19,10 @@ from ..reading import attributes, cage, transform
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside, at_once
 from . import followers, following, proxy, seals, tables
+from .applied_shapes import is_stray, rows_as_posed
 from .places import NOWHERE, Places
 from .posed_surface import PosedSurface
+from .relocation import Elements
 
 Shape = Literal["SHOWN", "REST"]
 
@@ -82,6 +84,11 @@ class Unbinding:
         surfaces, used = set(), set()
         for ob in self._things:
             modifier = followers.modifier_of(ob)
+            if modifier is None:  # it was deleted or applied before
+                surface = followers.surface_of(ob)
+                surfaces.add(surface)
+                used.add(tables.of_surface(surface) if surface else None)
+                continue
             surfaces.add(groups.get_input(modifier, SURFACE))
             used.add(groups.get_input(modifier, TILES))
             own_table = followers.curve_table(ob)
@@ -144,14 +151,17 @@ def _freeze(
     so that what is bound again does not move.
     """
     data, frozen = ob.data, _Frozen(ob.data)
-    frozen.values = _shown(ob, depsgraph)
+    was_applied = is_stray(ob)
+    frozen.values = {} if was_applied else _shown(ob, depsgraph)
     yield 0.0
     if any(len(attributes.read(data, name)) != len(v) for name, v in frozen.values.items()):
         raise RefusalError(
             f"The modifier by which {ob.name} follows gives it another number of points: unbind "
             "it with the shape At Rest"
         )
-    if all(np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()):
+    if not was_applied and all(
+        np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()
+    ):
         return frozen  # it is at rest, because its tables do not fit
     if not (followers.is_placed(ob) and ids.TILE in data.attributes):
         return frozen  # somebody has removed or changed its places
@@ -168,6 +178,10 @@ def _freeze(
         frozen.values[ids.FACE] = face
         return frozen
     Places.read(data).check(posed.in_object.face_count, posed.cage.name)
+    if was_applied:
+        rows = yield from rows_as_posed(Elements(ob), posed)
+        if not len(rows):
+            return frozen  # its modifier was deleted, or applied where the surface was at rest
     face, uv = (attributes.read(data, name)[follows] for name in (ids.FACE, ids.UV))
     matrix = transform.world_matrix(ob)
 
