@@ -100,10 +100,13 @@ def _live_troubles(things: list[bpy.types.Object]) -> list[Trouble]:
     """
     still = [ob for ob in things if _edited_surface(ob) is None]
     found = [Trouble(live_kept.trouble(ob), live_kept.remedy(ob)) for ob in still]
+    has_changed = {live.surface_of(ob) for ob in still if live_kept.remedy(ob) == ids.REBIND}
     for surface in dict.fromkeys(map(live.surface_of, still)):
         # with a state, it is named among the troubles of that
         if surface is not None and State.of(surface) is None:
-            found.append(Trouble(capture_place.obstacle(surface), ids.FOLLOW))
+            # where faces have changed, Follow refuses, and Rebind also does what it would do
+            remedy = ids.REBIND if surface in has_changed else ids.FOLLOW
+            found.append(Trouble(capture_place.obstacle(surface), remedy))
     return [trouble for trouble in found if trouble.text]
 
 

@@ -7,7 +7,7 @@ from bpy.props import EnumProperty
 from .. import ids
 from ..placing.binding_operator import rely_on_bound
 from ..placing.followers import live_modifier_of
-from ..placing.following import unused_captures
+from ..placing.following import has_unused_attributes, unused_captures
 from ..placing.live_unbinding import LiveUnbinding
 from ..placing.unbinding import Unbinding, leftovers_of, remove_leftovers
 from ..tasks import polling
@@ -88,8 +88,13 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
 
 def _with_leftovers(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the active mesh if there are tables that nothing reads any more, and the selected
-    meshes that have *Limit Capture* although nothing follows them, as copies of a surface have.
+    meshes that have *Limit Capture*, or the attributes of one that was applied, although nothing
+    follows them, as copies of a surface have.
     """
     meshes = [ob for ob in selected(context) if ob.type == "MESH"]
     active = context.active_object
-    return [ob for ob in meshes if unused_captures(ob) or (ob == active and leftovers_of(ob))]
+    return [
+        ob
+        for ob in meshes
+        if unused_captures(ob) or has_unused_attributes(ob) or (ob == active and leftovers_of(ob))
+    ]

@@ -20,6 +20,10 @@ _DIVISORS = ((4093, 1021), (4079, 1019))
 # Whole numbers up to this are exact as well.
 _CREASE_STEPS = 1 << 23
 
+CHECKSUMS = (ids.CAGE_COUNT, ids.CAGE_TOPOLOGY, ids.CAGE_EDGE_CREASES, ids.CAGE_VERTEX_CREASES)
+#: The attributes that the group stores at the vertices, and their types
+STORED = {ids.CAGE_POSITION: "FLOAT_VECTOR", **dict.fromkeys(CHECKSUMS, "INT")}
+
 
 def topology_sum(edges: np.ndarray) -> int:
     """Returns a checksum of edges (e, 2), given by their vertices: the one that the group

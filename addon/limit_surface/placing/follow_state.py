@@ -6,7 +6,7 @@ trees, and what has gone wrong.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 
@@ -85,8 +85,13 @@ class State:
             for ob in self.children
             for text in live_children.obstacles(ob, signature)
         )
-        stale = self._stale(signature) if signature else ()
-        return [*self._broken(), *stale, *self._added(), *of_children]
+        changed = list(self._changed_faces(signature)) if signature else []
+        rules = self._changed_rules(signature) if signature and not changed else ()
+        samples = self.stale_samples(signature) if signature else ()
+        others = [*self._broken(), *rules, *samples, *self._added()]
+        if changed:  # Follow refuses then, and Rebind also does what Follow would have done
+            others = [replace(t, remedy=_after_changes(t.remedy)) for t in others]
+        return [*changed, *others, *of_children]
 
     def _broken(self) -> Iterator[Trouble]:
         remedy = ids.FOLLOW if self.followers or self.strays else ids.SAMPLE_TABLES
@@ -126,20 +131,20 @@ class State:
                 text = f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound"
                 yield Trouble(text, ids.FOLLOW)
 
-    def _stale(self, signature: str) -> Iterator[Trouble]:
+    def _changed_faces(self, signature: str) -> Iterator[Trouble]:
         name = self.surface.name
-        stale = [
-            ob
-            for ob in self.followers
-            if (holder := holder_of(ob)) is not None and not following.holds(holder, signature)
-        ]
-        for ob in stale:
-            yield Trouble(f"The faces of {name} have changed since {ob.name} was bound", ids.REBIND)
+        for ob in self.followers:
+            holder = holder_of(ob)
+            if holder is not None and not following.holds(holder, signature):
+                text = f"The faces of {name} have changed since {ob.name} was bound"
+                yield Trouble(text, ids.REBIND)
+
+    def _changed_rules(self, signature: str) -> Iterator[Trouble]:
         table = tables.of_surface(self.surface)
-        if not stale and table is not None and table.get(ids.SIGNATURE) != signature:
+        if table is not None and table.get(ids.SIGNATURE) != signature:
             text = (
-                f"The creases or subdivision settings of {name} have changed since its tables were "
-                "made"
+                f"The creases or subdivision settings of {self.surface.name} have changed since "
+                "its tables were made"
             )
             if tables.points_of(table) is not None and not tables.fits(table):
                 text += (
@@ -147,7 +152,6 @@ class State:
                     "animated need the mode Live"
                 )
             yield Trouble(text, ids.REBIND)
-        yield from self.stale_samples(signature)
 
     def stale_samples(self, signature: str) -> Iterator[Trouble]:
         """Yields what is wrong if the table of all tiles was made for another surface."""
@@ -173,6 +177,10 @@ def surfaces() -> list[bpy.types.Object]:
             if each is not None:
                 found[each] = None
     return list(found)
+
+
+def _after_changes(remedy: str) -> str:
+    return ids.REBIND if remedy == ids.FOLLOW else remedy
 
 
 def _tables_of(followers: list[bpy.types.Object]) -> list[bpy.types.Object]:

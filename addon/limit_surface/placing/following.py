@@ -23,7 +23,7 @@ from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, overrides, rules
 from ..tasks.object_keys import ObjectKey
-from . import live_attributes, proxy, shared_tables, tables
+from . import capture_place, live_attributes, proxy, shared_tables, tables
 from .follow_properties import follows
 from .followers import (
     ensure_modifier,
@@ -38,6 +38,7 @@ from .followers import (
     own_followers_of,
     sharers,
     surface_of,
+    users_of,
 )
 from .places import Places
 from .relocation import TYPES, Relocation
@@ -268,7 +269,10 @@ def settle(ob: bpy.types.Object) -> None:
 
 
 def ensure_capture(surface: bpy.types.Object) -> None:
-    """Puts the modifier *Limit Capture* directly before the subdivision."""
+    """Puts the modifier *Limit Capture* directly before the subdivision. What one that was applied
+    has left in the mesh is removed.
+    """
+    capture_place.remove_applied(surface)
     modifier = next(groups.modifiers(surface, ids.CAPTURE_GROUP), None)
     if modifier is None:
         modifier = groups.add_modifier(surface, CAPTURE)
@@ -306,21 +310,37 @@ def unused_captures(surface: bpy.types.Object) -> list[bpy.types.NodesModifier]:
         for modifier in groups.modifiers(surface, ids.CAPTURE_GROUP)
         if not overrides.is_of_library(modifier)
     ]
-    if (
-        not captures
-        or not surface.is_editable
-        or tables.all_of_surface(surface)
-        or followers_of(surface)  # library overrides have tables of their own
-        or live_followers_of(surface)
-    ):
+    if not captures or not surface.is_editable or _is_read(surface):
         return []
     return captures
 
 
+def has_unused_attributes(surface: bpy.types.Object) -> bool:
+    """Tells whether the mesh of a surface has attributes that a *Limit Capture* that was applied
+    has left, although nothing follows any object with this mesh.
+    """
+    if not capture_place.has_removable(surface):
+        return False
+    return not any(_is_read(user) for user in users_of(surface.data))
+
+
+def _is_read(surface: bpy.types.Object) -> bool:
+    """Tells whether something follows the surface, or tables read it."""
+    return bool(
+        tables.all_of_surface(surface)
+        or followers_of(surface)  # library overrides have tables of their own
+        or live_followers_of(surface)
+    )
+
+
 def remove_unused_capture(surface: bpy.types.Object) -> None:
-    """Removes *Limit Capture* from a surface that nothing follows any more."""
+    """Removes *Limit Capture*, and what one that was applied has left, from a surface that nothing
+    follows any more.
+    """
     for modifier in unused_captures(surface):
         surface.modifiers.remove(modifier)
+    if has_unused_attributes(surface):
+        capture_place.remove_applied(surface)
 
 
 def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:

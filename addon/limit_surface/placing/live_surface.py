@@ -18,6 +18,7 @@ import numpy as np
 from .. import ids, native
 from ..errors import CageError
 from ..nodes import groups
+from ..nodes.capture import CHECKSUMS
 from ..reading import attributes, cage, private_scene, rules
 from ..tasks.unchanged import faces_of
 from . import capture_place, following, live_source
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     import limitsurf
 
 _WITHOUT_EFFECT = (ids.FOLLOW_LIVE_GROUP, ids.CAPTURE_GROUP)
-_CHECKSUMS = (ids.CAGE_COUNT, ids.CAGE_TOPOLOGY, ids.CAGE_EDGE_CREASES, ids.CAGE_VERTEX_CREASES)
 
 
 class _Captured(NamedTuple):
@@ -164,7 +164,7 @@ def _evaluated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Capture
     if capture_place.hands_on_another_mesh(ob):
         return None
     geometry, mesh = least_subdivided(evaluated)  # the mesh lives as long as the geometry
-    return None if mesh is None else _captured(ob, mesh)
+    return None if mesh is None else _captured(ob, evaluated, mesh, depsgraph.mode)
 
 
 def least_subdivided(
@@ -188,7 +188,7 @@ def least_subdivided(
 
 def _is_bare(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
     """Tells whether the control mesh is the object's own mesh: no modifier changes it."""
-    shown = "show_viewport" if depsgraph.mode == "VIEWPORT" else "show_render"
+    shown = capture_place.shown_in(depsgraph.mode)
     before = [m for m in ob.modifiers[: rules.place_of_subsurf(ob)] if getattr(m, shown)]
     return ob.data.shape_keys is None and all(
         m.type == "NODES" and groups.name_of(m.node_group) in _WITHOUT_EFFECT for m in before
@@ -203,15 +203,20 @@ def _evaluated_anew(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ca
             modifier.show_viewport = modifier.show_render
 
     with cage.evaluated_copy(ob, rules.place_of_subsurf(ob), depsgraph, enable) as evaluated:
-        return _captured(ob, evaluated.data)
+        return _captured(ob, evaluated, evaluated.data, "VIEWPORT")
 
 
-def _captured(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> _Captured | None:
-    """Returns what the object's evaluated mesh contains, if it has the modifier."""
+def _captured(
+    ob: bpy.types.Object, evaluated: bpy.types.Object, mesh: bpy.types.Mesh, mode: str
+) -> _Captured | None:
+    """Returns what *Limit Capture* has stored in the evaluated object's mesh, if it was run."""
     stored = mesh.attributes
-    if any(name not in stored for name in (ids.CAGE_POSITION, *_CHECKSUMS)) or not mesh.vertices:
+    if not capture_place.was_run(ob, evaluated, mode) or ids.CAGE_POSITION not in stored:
         return None
-    sums = tuple(stored[name].data[0].value for name in _CHECKSUMS)
+    found = [stored[name].data for name in CHECKSUMS if name in stored]
+    if len(found) < len(CHECKSUMS) or not all(map(len, found)):
+        return None
+    sums = tuple(values[0].value for values in found)
     positions = attributes.read(mesh, ids.CAGE_POSITION)
     if len(positions) < sums[0]:
         return None

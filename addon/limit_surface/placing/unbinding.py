@@ -18,7 +18,7 @@ from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, transform
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside, at_once
-from . import followers, following, proxy, seals, tables
+from . import capture_place, followers, following, proxy, seals, tables
 from .applied_shapes import is_stray, rows_as_posed
 from .places import NOWHERE, Places
 from .posed_surface import PosedSurface
@@ -253,12 +253,15 @@ def remove_leftovers(surface: bpy.types.Object) -> str:
     """
     leftovers = leftovers_of(surface)
     had_capture = any(groups.modifiers(surface, ids.CAPTURE_GROUP))
+    had_applied = capture_place.holds_applied(surface)
     count, of_tiles = len(leftovers), [ob for ob in leftovers if tables.surface_of(ob)]
     _remove_unused(of_tiles, {surface})
     has_capture = any(groups.modifiers(surface, ids.CAPTURE_GROUP))
     removed = [counted(count, "hidden tables")] if count else []
     if had_capture and not has_capture:
         removed.append(f"the modifier {ids.CAPTURE_GROUP}")
+    if had_applied and not capture_place.holds_applied(surface):
+        removed.append(f"the attributes of the modifier {ids.CAPTURE_GROUP}")
     return f"Nothing follows {surface.name}. Removed: {', '.join(removed)}"
 
 
