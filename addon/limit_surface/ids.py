@@ -111,6 +111,8 @@ OFFSET = "limit_offset"
 # What follows a deforming surface: groups, the tables that they read, and their attributes
 GROUP_MARK = "limit_surface_group"  # custom property of node groups: their name and version
 SIGNATURE = "limit_surface_signature"  # custom property of the table of tiles, and of what follows
+# custom property of what follows: the surface that it belonged to when it was bound
+SURFACE_NAME = "limit_surface_name"
 CAPTURE_GROUP = "Limit Capture"
 TILES_GROUP = "Limit Tiles"
 SAMPLE_TILE_GROUP = "Sample Limit Tile"

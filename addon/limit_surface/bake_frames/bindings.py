@@ -24,7 +24,8 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
             check_live(thing, depsgraph.scene)
             ground = live_children.surface_of(thing)
             _check_growing(thing)
-            surface = followers.surface_of(thing) if followers.is_placed(thing) else ground
+            stands = followers.is_placed(thing) or followers.is_astray(thing)
+            surface = followers.surface_of(thing) if stands else ground
             if surface is None:
                 continue
             if surface not in cages:
@@ -174,6 +175,8 @@ def _check_following(ob: bpy.types.Object, surface: bpy.types.Object, signature:
     if not follows and not followers.was_bound(ob):
         return
     state = State(surface, [ob] if follows else [], [] if follows else [ob])
+    if followers.is_astray(ob):
+        state = State(surface, [], [], astray=(ob,))
     _refuse(ob, state.troubles(signature))
 
 

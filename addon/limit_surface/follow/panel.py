@@ -7,7 +7,15 @@ from .. import ids, native
 from ..counting import by_count, counted
 from ..placing import capture_place, live, live_kept
 from ..placing.follow_state import State, Trouble
-from ..placing.followers import anything_follows, is_placed, live_followers_of, surface_of
+from ..placing.followers import (
+    anything_follows,
+    astray_from,
+    is_astray,
+    is_placed,
+    live_followers_of,
+    live_modifier_of,
+    surface_of,
+)
 from ..tasks import wrapped_text
 from . import stale
 
@@ -63,7 +71,8 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
     if surface is not None:
         column.label(text=f"It follows {surface.name} live", icon="OBJECT_DATA")
     else:
-        follow = counted(len(things), "objects", "follows", "follow")
+        count = sum(not is_astray(thing) for thing in things)
+        follow = counted(count, "objects", "follows", "follow")
         column.label(text=f"{follow} it live", icon="OBJECT_DATA")
     column.prop(context.scene, ids.LIVE)
     if waiting := next(filter(None, map(_edited_surface, things)), None):
@@ -75,10 +84,14 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
 
 
 def _live_things(ob: bpy.types.Object | None) -> list[bpy.types.Object]:
-    """Returns the object itself if it follows a surface live, or what follows it live."""
+    """Returns the object itself if it follows a surface live, or what follows it live, or
+    should.
+    """
     if ob is None:
         return []
-    return [ob] if live.surface_of(ob) is not None else live_followers_of(ob)
+    if live.surface_of(ob) is not None:
+        return [ob]
+    return [*live_followers_of(ob), *filter(live_modifier_of, astray_from(ob))]
 
 
 def _rest(ob: bpy.types.Object | None) -> str:

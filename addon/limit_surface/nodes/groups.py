@@ -99,7 +99,12 @@ def set_input(modifier: bpy.types.NodesModifier, name: str, value: Any) -> None:
     key = _identifier(modifier, name)
     inputs = _inputs(modifier)
     if inputs is None:
+        refers_anew = isinstance(value, bpy.types.ID) and modifier.get(key) != value
         modifier[key] = value
+        if refers_anew:
+            # Blender only notices by a property of its own that the modifier depends on another
+            # object than before.
+            modifier.node_group = modifier.node_group
     else:
         getattr(inputs, key).value = value
     modifier.id_data.update_tag()

@@ -16,6 +16,7 @@ from ..nodes import groups
 from ..nodes.follow import TILES
 from . import all_tiles, capture_place, following, live_children, mending, seals, tables
 from .followers import (
+    astray_from,
     followers_of,
     holder_of,
     holders,
@@ -23,6 +24,7 @@ from .followers import (
     strays_of,
     surface_of,
     was_bound,
+    why_astray,
 )
 
 
@@ -41,6 +43,7 @@ class State:
     strays: list[bpy.types.Object]  # they were bound, and have lost their modifier
     samples: bpy.types.Object | None = None  # the table of all tiles
     children: tuple[bpy.types.Object, ...] = ()  # live children that grow on it
+    astray: tuple[bpy.types.Object, ...] = ()  # their modifiers name another surface
 
     @classmethod
     def of(cls, ob: bpy.types.Object | None) -> State | None:
@@ -54,8 +57,16 @@ class State:
         children = tuple(live_children.on_surface(surface))
         counts = surface == ob or ob in children
         samples = all_tiles.of_surface(surface) if counts else None
-        state = cls(surface, followers_of(surface), strays_of(surface), samples, children)
-        return state if state.followers or state.strays or samples or children else None
+        state = cls(
+            surface,
+            followers_of(surface),
+            strays_of(surface),
+            samples,
+            children,
+            tuple(thing for thing in astray_from(surface) if modifier_of(thing)),
+        )
+        is_empty = not (state.followers or state.strays or samples or children or state.astray)
+        return None if is_empty else state
 
     @property
     def places(self) -> int:
@@ -88,7 +99,8 @@ class State:
         changed = list(self._changed_faces(signature)) if signature else []
         rules = self._changed_rules(signature) if signature and not changed else ()
         samples = self.stale_samples(signature) if signature else ()
-        others = [*self._broken(), *rules, *samples, *self._added()]
+        broken = [*self._broken(), *self._misled(signature)]
+        others = [*broken, *rules, *samples, *self._added()]
         if changed:  # Follow refuses then, and Rebind also does what Follow would have done
             others = [replace(t, remedy=_after_changes(t.remedy)) for t in others]
         return [*changed, *others, *of_children]
@@ -112,7 +124,8 @@ class State:
             elif of != self.surface:
                 whose = of.name if of else "a surface that was deleted"
                 yield Trouble(f"{ob.name} reads the tables of {whose}", ids.FOLLOW)
-        if text := capture_place.obstacle(self.surface):
+        is_read = self.followers or self.strays or self.samples or self.children
+        if is_read and (text := capture_place.obstacle(self.surface)):
             yield Trouble(text, remedy)
         if self.samples is not None:
             if mending.is_broken(self.samples):
@@ -121,6 +134,13 @@ class State:
             if tables.points_of(self.samples) is None:
                 text = f"The hidden table of points that {self.samples.name} reads was deleted"
                 yield Trouble(text, ids.SAMPLE_TABLES)
+
+    def _misled(self, signature: str | None) -> Iterator[Trouble]:
+        for ob in self.astray:
+            # Follow finds the places of control points anew
+            holder = holder_of(ob) if ob.type != "CURVE" else None
+            is_other = signature and holder and not following.holds(holder, signature)
+            yield Trouble(why_astray(ob), ids.REBIND if is_other else ids.FOLLOW)
 
     def _added(self) -> Iterator[Trouble]:
         for ob in self.followers:

@@ -139,15 +139,84 @@ def followed_surface(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
-    """Returns the surface on which the object's things stand: that which it follows, hair's own
-    surface, or a parent that is a mesh.
+    """Returns the surface on which the object's things stand: that which it follows, or where it
+    follows none, or is astray, the one that it belongs to.
     """
     followed = followed_surface(ob)
-    if followed:
-        return followed
+    return followed if followed and not is_astray(ob) else own_surface_of(ob)
+
+
+def own_surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the surface that the object belongs to: hair's own surface, or a parent that is a
+    mesh.
+    """
     if ob.type == "CURVES" and ob.data.surface:
         return ob.data.surface
+    return _mesh_parent(ob)
+
+
+def _mesh_parent(ob: bpy.types.Object) -> bpy.types.Object | None:
     return ob.parent if ob.parent and ob.parent.type == "MESH" else None
+
+
+def is_astray(ob: bpy.types.Object) -> bool:
+    """Tells whether the object's modifier names another surface than the one that the object
+    belongs to: its modifiers were copied from another object, or its surface was changed by hand.
+    What this file does not store cannot be put right in it, and is taken at its word.
+    """
+    followed, own = followed_surface(ob), own_surface_of(ob)
+    if followed is None or own is None or own == followed or not is_own(ob):
+        return False
+    if ob.type == "CURVES":
+        return ob.data.surface is not None and not _is_duplicate(ob, followed)
+    if ids.CARRIER_MARK in own:
+        return False
+    return ob.type == "CURVE" or _belonged_to_parent(ob)
+
+
+def _is_duplicate(hair: bpy.types.Object, followed: bpy.types.Object) -> bool:
+    """Tells whether hair that follows a linked duplicate of its surface has the data of the
+    original hair, or a copy of them: they name the original surface.
+    """
+    parent, named = _mesh_parent(hair), hair.data.surface
+    if parent is None:
+        return any(followed_surface(other) == named for other in sharers(hair))
+    return parent == followed and hair.data.get(ids.SURFACE_NAME, named.name) == named.name
+
+
+def _belonged_to_parent(ob: bpy.types.Object) -> bool:
+    """Tells whether points were placed on their parent, or were bound to it. Other meshes may have
+    any mesh as their parent.
+    """
+    is_bound = ids.SIGNATURE in ob.data
+    return is_placed(ob) and (not is_bound or bool(ob.data.get(ids.SURFACE_NAME)))
+
+
+def note_surface(things: Iterable[bpy.types.Object], surface: bpy.types.Object) -> None:
+    """Stores which surface things belong to that are bound to one."""
+    for ob in things:
+        if ob.type == "CURVES":
+            ob.data[ids.SURFACE_NAME] = (ob.data.surface or surface).name
+        elif ob.type != "CURVE":  # a curve can only be bound to its parent, if that is a mesh
+            ob.data[ids.SURFACE_NAME] = surface.name if ob.parent == surface else ""
+
+
+def why_astray(ob: bpy.types.Object) -> str:
+    """Returns what is wrong with an object that is astray; nothing for any other."""
+    followed, own = followed_surface(ob), own_surface_of(ob)
+    if followed is None or own is None or not is_astray(ob):
+        return ""
+    names_it = "Object Data > Surface" if ob.type == "CURVES" else "its parent"
+    return (
+        f"The modifier of {ob.name} follows {followed.name}, but {ob.name} belongs to {own.name} "
+        f"({names_it})"
+    )
+
+
+def check_not_astray(ob: bpy.types.Object) -> None:
+    """Raises RefusalError for an object that is shown on another surface than its own."""
+    if reason := why_astray(ob):
+        raise RefusalError(f"{reason}: run Follow Limit Surface on it first")
 
 
 def sharers(ob: bpy.types.Object) -> list[bpy.types.Object]:
@@ -176,7 +245,7 @@ def _is_points(ob: bpy.types.Object) -> bool:
 
 def followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that follow a surface by nodes."""
-    return [ob for ob in own_objects_using(surface) if _is_its(modifier_of(ob), surface)]
+    return [ob for ob in own_objects_using(surface) if _follows(ob, modifier_of(ob), surface)]
 
 
 def own_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
@@ -186,11 +255,14 @@ def own_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
 
 def live_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that follow a surface live."""
-    return [ob for ob in own_objects_using(surface) if _is_its(live_modifier_of(ob), surface)]
+    return [ob for ob in own_objects_using(surface) if _follows(ob, live_modifier_of(ob), surface)]
 
 
-def _is_its(modifier: bpy.types.NodesModifier | None, surface: bpy.types.Object) -> bool:
-    return modifier is not None and groups.get_input(modifier, SURFACE) == surface
+def _follows(
+    ob: bpy.types.Object, modifier: bpy.types.NodesModifier | None, surface: bpy.types.Object
+) -> bool:
+    is_its = modifier is not None and groups.get_input(modifier, SURFACE) == surface
+    return is_its and not is_astray(ob)
 
 
 def anything_follows() -> bool:
@@ -213,9 +285,21 @@ def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     ]
 
 
+def astray_from(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns the file's own objects that belong to a surface, and whose modifiers name another."""
+    return [
+        ob for ob in own_objects_using(surface) if own_surface_of(ob) == surface and is_astray(ob)
+    ]
+
+
 def bound_to(surface: bpy.types.Object) -> list[bpy.types.Object]:
-    """Returns the file's own objects that follow a surface in whatever way, and the strays."""
-    return [*followers_of(surface), *live_followers_of(surface), *strays_of(surface)]
+    """Returns the file's own objects that follow a surface in whatever way, or should."""
+    return [
+        *followers_of(surface),
+        *live_followers_of(surface),
+        *strays_of(surface),
+        *astray_from(surface),
+    ]
 
 
 def own_or_all(things: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:

@@ -27,14 +27,17 @@ from . import capture_place, live_attributes, proxy, shared_tables, tables
 from .follow_properties import follows
 from .followers import (
     ensure_modifier,
+    followed_surface,
     followers_of,
     holder_of,
     holders,
+    is_astray,
     is_own,
     is_placed,
     live_followers_of,
     live_modifier_of,
     modifier_of,
+    note_surface,
     own_followers_of,
     sharers,
     surface_of,
@@ -161,6 +164,7 @@ class Request:
             begin = rows.stop
         for ob in followers:
             ensure_modifier(ob, surface, table)
+        note_surface(followers, surface)
         tables.remove_unread()
         fresh = made.places[self._old :]
         return Outcome(
@@ -253,6 +257,10 @@ def have_same_faces(one: str, other: str) -> bool:
 def check_holds(ob: bpy.types.Object, surface: bpy.types.Object, now: str) -> None:
     holder = holder_of(ob)
     if holder is not None and not holds(holder, now):
+        if is_astray(ob):
+            raise RefusalError(
+                f"{ob.name} is not bound to the faces that {surface.name} has now: rebind it"
+            )
         raise RefusalError(
             f"{ob.name} was bound before the faces of {surface.name} changed: rebind it, or unbind "
             "it first"
@@ -369,7 +377,9 @@ def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     # a mesh that stores no locations may have any mesh as its parent
     theirs = surface_of(ob) if is_placed(ob) or ob.type == "CURVES" else None
     if theirs not in (None, surface):
-        raise RefusalError(f"{ob.name} belongs to {theirs.name}, not to {surface.name}")
+        raise RefusalError(
+            f"{ob.name} belongs to {theirs.name}, not to {surface.name}: {_way_to(ob, surface)}"
+        )
     for other in sharers(ob):
         if surface_of(other) not in (None, surface):
             raise RefusalError(
@@ -383,6 +393,17 @@ def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
                 f"{ob.name} cannot follow itself or an object that is parented to it"
             )
         carrier = carrier.parent
+
+
+def _way_to(ob: bpy.types.Object, surface: bpy.types.Object) -> str:
+    """Returns how an object that belongs to another surface comes to belong to this one."""
+    if ob.type == "CURVES":
+        return (
+            f"choose {surface.name} in Object Data > Surface and run Rebind to Limit Surface, or "
+            "run Snap to Limit Surface"
+        )
+    unbound = "unbind it, " if followed_surface(ob) else ""
+    return f"{unbound}make {surface.name} its parent, and run Rebind to Limit Surface"
 
 
 def check_first(ob: bpy.types.Object) -> None:

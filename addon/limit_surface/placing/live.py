@@ -16,7 +16,7 @@ from ..reading import private_scene
 from ..reading.users import objects_using
 from . import live_attributes, live_source, live_surface, live_thing
 from . import live_kept as kept
-from .followers import sharers
+from .followers import is_astray, own_surface_of, sharers
 from .live_chains import Chains, Followers
 from .live_defects import Defects
 from .live_edits import Edits
@@ -48,7 +48,7 @@ def followers_in(
         if ob.type not in ("CURVES", "MESH", "POINTCLOUD") or ob.data in seen:
             continue
         surface = surface_of(ob)
-        if surface is None:
+        if surface is None or is_astray(ob):
             continue
         missing = live_attributes.missing(ob.data)
         if missing:
@@ -159,7 +159,7 @@ def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """Makes sure that the shape at rest is that of the points as they are now. Raises CageError or
     MeshError where there is no surface, and StaleFacesError where it has other faces.
     """
-    surface = surface_of(ob)
+    surface = own_surface_of(ob) if is_astray(ob) else surface_of(ob)
     if surface is not None:
         on = kept.surface(surface, depsgraph)
         kept.thing(ob).read_anew()

@@ -103,6 +103,7 @@ class LiveRequest:
             self._unbinding.write()
         following.ensure_capture(self._surface)
         live.read_anew(self._surface)
+        followers.note_surface(self._things, self._surface)
         for ob in self._things:
             live_source.store(ob.data, self._surface, self._signature)
         depsgraph = context.evaluated_depsgraph_get()
@@ -184,7 +185,10 @@ def finish_rebinding(
         return
     following.ensure_capture(surface)
     live.read_anew(surface)
+    followers.note_surface(things, surface)
     for ob in things:
+        if modifier := followers.live_modifier_of(ob):  # it may name another surface
+            groups.set_input(modifier, SURFACE, surface)
         live_source.store(ob.data, surface, signature)
     depsgraph = context.evaluated_depsgraph_get()
     for ob in things:

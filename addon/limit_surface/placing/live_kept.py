@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import native
+from .. import ids, native
 from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes
-from .followers import element_called, sharers
+from .followers import element_called, sharers, why_astray
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
 
@@ -61,12 +61,13 @@ def _is_edited(kind: str, name: str, library: str | None) -> bool:
 def trouble(ob: bpy.types.Object) -> str:
     """Returns the reason why the object, or a part of it, does not follow at present."""
     kept = thing(ob)
-    return _reason(ob).text or _lost_frames(ob, kept.lost_frames) or _added(ob, kept.added)
+    reason = why_astray(ob) or _reason(ob).text
+    return reason or _lost_frames(ob, kept.lost_frames) or _added(ob, kept.added)
 
 
 def remedy(ob: bpy.types.Object) -> str:
     """Returns the operator that puts this right, if it is known."""
-    return _reason(ob).remedy
+    return ids.FOLLOW if why_astray(ob) else _reason(ob).remedy
 
 
 def _reason(ob: bpy.types.Object) -> _Reason:

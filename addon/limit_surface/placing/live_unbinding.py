@@ -35,6 +35,8 @@ class LiveUnbinding:
         things = live_binding.with_sharers(things)
         for ob in things:
             following.check_editable(ob)
+            if shape == "SHOWN":
+                followers.check_not_astray(ob)
         self._things, self._shape = list(things), shape
         self._surfaces = {ob: live.surface_of(ob) for ob in things}
         self._now: dict[bpy.types.Object, _Now] = {}

@@ -14,7 +14,7 @@ from .. import ids, native
 from ..reading import attributes, cage
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes
-from .followers import live_modifier_of, modifier_of, surface_of
+from .followers import check_not_astray, live_modifier_of, modifier_of, surface_of
 from .live_unbinding import places_now
 from .posed_surface import PosedSurface
 from .unbinding import shown_now
@@ -24,6 +24,7 @@ class PresentShape:
     """Raises RefusalError or CageError where it is not known."""
 
     def __init__(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+        check_not_astray(ob)
         self._key = ObjectKey.of(ob)  # undo may take all data away while hair is dragged
         self._values: dict[str, np.ndarray] = {}  # of those attributes that differ from the data's
         surface = surface_of(ob)

@@ -21,7 +21,7 @@ from ..tasks.refused_faces import check_some_left
 from . import curve_points, following, live_binding, seals
 from .applied_shapes import is_stray, rows_as_posed
 from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
-from .followers import bound_to, holder_of, is_own, live_modifier_of
+from .followers import bound_to, holder_of, is_astray, is_own, live_modifier_of
 from .newcomers import bound_at_closest, put_places
 from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed
@@ -96,8 +96,13 @@ class Rebinding:
         on_surface = bound_to(surface)
         following_now = [ob for ob in on_surface if is_own(ob)]
         bound = list(dict.fromkeys([*following_now, *things]))
-        # For control points that were added there are no places that could be kept.
-        self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
+        # There are no places that could be kept for control points that were added, nor for those
+        # of a curve whose modifier was copied with the table of another curve.
+        self._curves = [
+            ob
+            for ob in bound
+            if ob.type == "CURVE" and (curve_points.has_others(ob) or is_astray(ob))
+        ]
         kept = [ob for ob in bound if ob not in self._curves]
         for ob in self._curves:
             curve_points.check(ob, surface)

@@ -62,6 +62,7 @@ class Unbinding:
         self._frozen: list[_Frozen] = []
         if shape == "SHOWN":
             for ob in things:
+                followers.check_not_astray(ob)
                 _check_own_data(ob)
 
     def compute(self, context: bpy.types.Context) -> Pieces:
