@@ -148,6 +148,7 @@ def test_refusals(trees):
     before = scenes.file_contents()
     for match, properties in (
         ("no collection 'Wood' to put on the points", {"collection": "Wood"}),
+        ("Choose the collection to put on the points", {"collection": ""}),
         ("Index: Flat has no attribute 'Nix'", {
             "collection": "Trees", "index_source": "ATTRIBUTE", "index_attribute": "Nix",
         }),

@@ -35,7 +35,9 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
             (
                 "CLOSEST",
                 "Closest Point",
-                "Use the point of the surface that is closest to the root's place at rest",
+                "Use the point of the surface that is closest to the root's place at rest. Go to a "
+                "frame in which the surface has the shape that it had when things were bound: in "
+                "another pose they move to the places that are closest there",
                 0,
             ),
             (

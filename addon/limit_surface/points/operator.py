@@ -98,6 +98,8 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
         if self.instances == "COLLECTION":
             found = bpy.data.collections.get(self.collection)
             self._shown = found and CollectionKey.of(found)
+            if not self.collection:
+                raise RefusalError("Choose the collection to put on the points")
             if found is None:
                 raise RefusalError(
                     f"There is no collection {self.collection!r} to put on the points"

@@ -12,6 +12,10 @@ namespace {
 
 /// More than the relative rounding of a difference of squared distances.
 constexpr double kRounding = 1e-15;
+/// Around the tip of a cone, the normal depends on the direction in which a place lies. Except
+/// around u = v = 0, (u, v) has too few digits to tell such directions apart on cores whose sides
+/// are shorter than this part of a face.
+constexpr double kLeastWidth = 0x1p-48;
 
 }  // namespace
 
@@ -74,7 +78,7 @@ void ClosestOnCores::visit() {
       continue;
     }
     if (isSmall(core)) {
-      offerVertex(core);
+      visitLast(core, split);
       continue;
     }
     visitParts(core, split);
@@ -90,7 +94,13 @@ void ClosestOnCores::visit() {
 
 bool ClosestOnCores::isSmall(const SurfacePiece& core) const {
   return data_.patches.coreRadius(core) <= data_.tolerance ||
-         core.steps >= SurfacePatches::kMostSteps;
+         core.steps >= SurfacePatches::kMostSteps || (facing_ && hasTooFewDigits(core));
+}
+
+bool ClosestOnCores::hasTooFewDigits(const SurfacePiece& core) const {
+  const FaceRectangle on = data_.patches.rectangle(core);
+  const Location vertex = on.at(0, 0);
+  return (vertex.u > 0 || vertex.v > 0) && on.width() < kLeastWidth;
 }
 
 void ClosestOnCores::visitParts(const SurfacePiece& core, SurfacePatches::SplitCore& split) {
@@ -98,6 +108,16 @@ void ClosestOnCores::visitParts(const SurfacePiece& core, SurfacePatches::SplitC
   ++split_count_;
   for (const BezierPatch& patch : split.patches) {
     closestOnPatch(patch, {}, facing_, best_);
+  }
+}
+
+void ClosestOnCores::visitLast(const SurfacePiece& core, SurfacePatches::SplitCore& split) {
+  offerVertex(core);
+  if (facing_) {  // the vertex may have no normal
+    const double tolerance = best_.tolerance;
+    best_.tolerance = std::max(tolerance, 2 * data_.patches.coreRadius(core));  // all are as close
+    visitParts(core, split);
+    best_.tolerance = tolerance;
   }
 }
 
@@ -167,7 +187,7 @@ void ClosestOnCores::visitRing(int ring, SurfacePiece core) {
       return;
     }
   }
-  offerVertex(core);
+  visitLast(core, ring_split_);
 }
 
 void ClosestOnCores::visitSectors(int ring, int level, const SeenFromVertex& seen) {

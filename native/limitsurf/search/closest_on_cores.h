@@ -50,11 +50,15 @@ class ClosestOnCores {
   };
   struct SeenFromVertex;
 
-  /// Whether the rest of a core may be taken for its vertex.
+  /// Whether the rest of a core may be taken for its vertex: it is smaller than the tolerance, or
+  /// smaller than what a Location can tell, if normals matter.
   bool isSmall(const SurfacePiece& core) const;
+  bool hasTooFewDigits(const SurfacePiece& core) const;
   /// Splits a core and searches its patches.
   void visitParts(const SurfacePiece& core, SurfacePatches::SplitCore& split);
-  /// Offers the vertex in place of the rest of a core, which is smaller than the tolerance.
+  /// Searches the rest of a core that may be taken for its vertex.
+  void visitLast(const SurfacePiece& core, SurfacePatches::SplitCore& split);
+  /// Offers the vertex in place of the rest of a core.
   void offerVertex(const SurfacePiece& core);
 
   /// With a condition on normals: whether what is left of a core is so small, as seen from the

@@ -290,6 +290,9 @@ class PatchSearch {
       offer(s, t);
       return;
     }
+    if (facing_ && cells_ > kFewCells && isLine()) {
+      return;
+    }
     if ((cells_ > kFewCells && hasNoFootOfSheet(f, cell)) ||
         (cells_ > kManyCells && isAside(cell))) {
       return;
@@ -354,6 +357,14 @@ class PatchSearch {
     }
   }
 
+  /// Whether no normal of the patch can meet the condition since it has none.
+  bool isLine() {
+    if (!is_line_) {
+      is_line_ = facing_->excludesLine(patch_);
+    }
+    return *is_line_;
+  }
+
   static double sideOr(int side, double other) { return side < 0 ? 0 : side > 0 ? 1 : other; }
 
   void offer(double s, double t) {
@@ -398,6 +409,7 @@ class PatchSearch {
   double least_;          // a lower bound of the squared distance less the square of the range
   int cells_ = 0;
   std::optional<NormalPolynomial> normals_;
+  std::optional<bool> is_line_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "limitsurf/surface/padded.h"
 #include "limitsurf/types.h"
@@ -21,6 +22,9 @@ struct FaceRectangle {
     return {face, std::clamp(u0 + us * s + ut * t, 0., 1.),
             std::clamp(v0 + vs * s + vt * t, 0., 1.)};
   }
+
+  /// How far u goes.
+  double width() const { return std::abs(us) + std::abs(ut); }
 
   /// The least and the largest coordinates.
   struct Extent {

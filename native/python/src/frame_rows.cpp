@@ -82,7 +82,7 @@ Floats strandRows(const py::object& roots, const py::object& along, int points,
                   const py::object& out, int threads) {
   Doubles from = doubles(roots, "roots"), to = doubles(along, "along");
   const auto root = rows<Points>(from, "roots"), whole = rows<Points>(to, "along");
-  if (out.is_none()) {
+  if (out.is_none() || points < 1) {
     FloatPoints result = released([&] { return straightStrands(root, whole, points, threads); });
     return arrayIn<float>(std::move(result), {root.rows(), points, 3});
   }

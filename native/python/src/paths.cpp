@@ -194,6 +194,9 @@ py::object fitPath(const SharedSurface& shared, const py::object& face, const py
   options.value_tolerance = value_tolerance;
   options.threads = threads;
   const Locations path = locationsOf(shared.surface().faceCount(), face, uv);
+  if (!values.is_none()) {
+    checkRows("values", options.values.size(), static_cast<Eigen::Index>(path.size()), "face");
+  }
   const PathFit fit =
       onSurface(shared, threads, [&](const LimitSurface& surface, const SurfaceSearch& search) {
         return limitsurf::fitPath(surface, search, path, options);

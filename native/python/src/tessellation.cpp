@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -27,6 +26,8 @@ constexpr std::int64_t kLargestInt = std::numeric_limits<int>::max();
                               " to " + std::to_string(kMostTessellationLevels));
 }
 
+bool isInt(std::int64_t level) { return level >= -kLargestInt && level <= kLargestInt; }
+
 /// The least level that all faces may have.
 int leastLevel(const ControlMesh& mesh) {
   for (int face = 0; face < mesh.faceCount(); ++face) {
@@ -42,7 +43,7 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
   if (const py::object one = integerOf(levels)) {
     int overflow = 0;
     const std::int64_t wide = PyLong_AsLongLongAndOverflow(one.ptr(), &overflow);
-    if (overflow != 0 || std::abs(wide) > kLargestInt) {
+    if (overflow != 0 || !isInt(wide)) {
       refuseLevel("levels", valueText(levels), leastLevel(*shared.mesh));
     }
     const int level = static_cast<int>(wide);
@@ -55,7 +56,7 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
   for (py::ssize_t face = 0; face < each.size(); ++face) {
     const std::int64_t level = each.data()[face];
     const int own = static_cast<int>(face);
-    const bool is_int = level >= -kLargestInt && level <= kLargestInt;
+    const bool is_int = isInt(level);
     if (!is_int && own < shared.mesh->faceCount() && !shared.surface().refused().count(own)) {
       refuseLevel("levels[" + std::to_string(face) + "]", std::to_string(level),
                   shared.mesh->faceSize(own) == 4 ? 0 : 1);

@@ -543,6 +543,18 @@ def test_numbers_are_quoted_as_they_were_written(call, wrong):
             "values has 3 rows; expected 2, as many as face has$",
         ),
         (
+            lambda: SURFACE.fit_path(FACE[:2], UV[:2], 0.1, values=[]),
+            "values has 0 rows; expected 2, as many as face has$",
+        ),
+        (
+            lambda: ls.straight_strands(UP, UP, -1, np.zeros((3, 3, 3), np.float32)),
+            "points is -1; expected 1 or more$",
+        ),
+        (
+            lambda: SURFACE.tessellate(-(2**63)),
+            "levels is -9223372036854775808",
+        ),
+        (
             lambda: SURFACE.closest(POINTS, facing=[0, 0, 0]),
             r"row 0: facing is \(0, 0, 0\), which has no length",
         ),

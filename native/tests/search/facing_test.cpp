@@ -55,6 +55,81 @@ TEST(Facing, AVertexWhereTheDistanceFallsIsNoResult) {
   EXPECT_EQ(SurfaceSearch(surface).closest(point, options).at[0].face, -1);
 }
 
+TEST(Facing, NormalsAtTheTipOfAConeAreThoseOfTheLocations) {
+  // Places next to the tip have normals of all directions, and (u, v) near 1 has too few digits to
+  // tell them apart.
+  Random random(1);
+  constexpr int kDirections = 200;
+  for (int corner = 0; corner < 4; ++corner) {
+    Cage cone;
+    cone.positions.resize(7, 3);
+    cone.positions << 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 0.5, 0, -1, -1, 0, 0.5, -1, 0;
+    cone.faces = {{0, 1, 2, 3}, {0, 3, 4, 5}, {0, 5, 6, 1}};
+    for (std::vector<int>& face : cone.faces) {
+      std::rotate(face.begin(), face.begin() + corner, face.end());
+    }
+    cone.options.vertex_sharpness = {{0}, {10}};
+    const LimitSurface surface = limitSurface(cone);
+    ClosestOptions options;
+    options.facing.resize(kDirections, 3);
+    for (int i = 0; i < kDirections; ++i) {
+      options.facing.row(i) = random.vector(1).transpose();
+    }
+    options.max_angle = 0.8;
+    const Points tips = cone.positions.row(0).replicate(kDirections, 1);
+    const Hits hits = SurfaceSearch(surface).closest(tips, options);
+    int found = 0;
+    for (int i = 0; i < kDirections; ++i) {
+      if (hits.at[i].face >= 0) {
+        ++found;
+        const Vector3 normal = hits.normal.row(i).transpose();
+        const double cosine = normal.dot(options.facing.row(i).transpose().normalized());
+        EXPECT_GE(cosine, std::cos(options.max_angle + 1e-9)) << corner << ", " << i;
+        // as near as (u, v) can be to the tip; it is as near as wanted only at u = v = 0
+        EXPECT_LE(hits.distance[i], corner == 0 ? 1e-12 : 3e-9) << corner << ", " << i;
+      }
+    }
+    EXPECT_GT(found, kDirections / 4) << corner;
+  }
+}
+
+TEST(Facing, PlacesWithoutANormalCountOnlyForAllDirections) {
+  // The faces of one row end in one point, where they have no normal; and faces on an oblique line
+  // have none anywhere.
+  Cage pole = fullGrid(4, 4);
+  for (int i = 0; i < 5; ++i) {
+    pole.positions.row(i) << 2, 0, 0;
+  }
+  Cage line = fullGrid(4, 4);
+  for (int i = 0; i < line.vertexCount(); ++i) {
+    const double along = line.positions(i, 0) + 0.37 * line.positions(i, 1);
+    line.positions.row(i) << 0.3 * along, 0.7 * along, 0.11 * along;
+  }
+  Points points(2, 3);
+  points << 2, -1, 0, 0.4, 1, -0.5;
+  for (const Cage& cage : {pole, line}) {
+    const LimitSurface surface = limitSurface(cage);
+    const SurfaceSearch search(surface);
+    for (const double max_angle : {0.5, 2., 3.}) {
+      ClosestOptions options;
+      options.facing = Vector3(0, 0, -1).transpose().replicate(2, 1);
+      options.max_angle = max_angle;
+      std::int64_t cells = 0;
+      options.cells = &cells;
+      const Hits hits = search.closest(points, options);
+      EXPECT_EQ(hits.at[0].face, -1) << max_angle;
+      EXPECT_LT(cells, 20'000) << max_angle;
+    }
+    ClosestOptions all;
+    all.facing = Vector3(0, 0, -1).transpose().replicate(2, 1);
+    all.max_angle = kPi<double>;
+    const Hits hits = search.closest(points, all), any = search.closest(points);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_EQ(hits.distance[i], any.distance[i]);
+    }
+  }
+}
+
 TEST(Facing, MaximaAndSaddlesAreNoResults) {
   const auto find = [](const LimitSurface& surface, const Vector3& point, const Vector3& facing,
                        double max_angle) {

@@ -2,22 +2,55 @@
 #include "limitsurf/search/normals/facing.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace limitsurf {
 namespace {
 
 /// If the sine of the angle between the tangents is below this, rounding may turn their cross
-/// product too far, and the surface's frame decides about the normal.
+/// product too far, and the normal that evaluate() gives decides.
 constexpr double kParallel = 1e-3;
+/// The cross products of tangents of a patch that is collapsed onto a line are at most this part of
+/// the square of the longest tangent: 64 roundings. There evaluate() gives no normal.
+constexpr double kLine = 0x1p-46;
+/// On a patch whose sides are shorter than this part of a face, (u, v) near 1 has so few digits
+/// that the location of a place may be another place, which has another normal at the tip of a
+/// cone.
+constexpr double kSmall = 0x1p-40;
 
 }  // namespace
 
 bool Facing::accepts(const BezierPatch& patch, double s, double t, const Vector3& ds,
                      const Vector3& dt) const {
+  const Location at = patch.on.at(s, t);
+  if (patch.on.width() < kSmall) {
+    return accepts(at);
+  }
   // A patch has the orientation of its face, up to rotations by right angles.
   const Vector3 normal = ds.cross(dt);
-  return normal.norm() > kParallel * ds.norm() * dt.norm() ? accepts(normal)
-                                                           : accepts(patch.on.at(s, t));
+  return normal.norm() > kParallel * ds.norm() * dt.norm() ? accepts(normal) : accepts(at);
+}
+
+bool Facing::excludesLine(const BezierPatch& patch) const {
+  if (least_cosine < -1) {
+    return false;
+  }
+  const BezierPatch::Point* p = patch.points;
+  double longest = 0, largest = 0;
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      const Vector3 ds = (p[4 * j + i + 1] - p[4 * j + i]).head<3>();
+      longest = std::max(longest, ds.squaredNorm());
+      for (int x = 0; x < 4; ++x) {
+        for (int y = 0; y < 3; ++y) {
+          const Vector3 dt = (p[4 * (y + 1) + x] - p[4 * y + x]).head<3>();
+          longest = std::max(longest, dt.squaredNorm());
+          largest = std::max(largest, ds.cross(dt).squaredNorm());
+        }
+      }
+    }
+  }
+  return largest <= kLine * kLine * longest * longest;
 }
 
 bool Facing::excludes(const BezierPatch& patch) const {

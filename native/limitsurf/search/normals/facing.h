@@ -19,18 +19,26 @@ struct Facing {
   Vector3 direction;
   double least_cosine;
 
+  /// Where there is no normal (NaN), the condition is met only if it is none: by an angle of pi.
   bool accepts(const Vector3& normal) const {
-    return normal.dot(direction) >= least_cosine * normal.norm() * direction.norm();
+    return least_cosine < -1 ||
+           normal.dot(direction) >= least_cosine * normal.norm() * direction.norm();
   }
-  /// The same test with the surface's frame, for places where the tangents do not determine the
-  /// normal.
-  bool accepts(const Location& at) const { return accepts(frameNormal(surface, at)); }
-  /// The same at (s, t) of a patch, whose derivatives there are `ds` and `dt`.
+  /// The same test with the normal that evaluate() gives.
+  bool accepts(const Location& at) const {
+    return accepts(
+        surface.evaluate({&at, 1}, Derivatives::first, true, 1).normal.row(0).transpose());
+  }
+  /// The same at (s, t) of a patch, whose derivatives there are `ds` and `dt`. On patches so small
+  /// that a Location cannot tell their places apart, the location decides that stands for the
+  /// place.
   bool accepts(const BezierPatch& patch, double s, double t, const Vector3& ds,
                const Vector3& dt) const;
 
   /// Whether no normal of the patch meets the condition for certain.
   bool excludes(const BezierPatch& patch) const;
+  /// Whether none does because the patch is collapsed onto a line, and has no normals.
+  bool excludesLine(const BezierPatch& patch) const;
 };
 
 }  // namespace limitsurf
