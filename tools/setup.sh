@@ -142,7 +142,7 @@ install_module() {
   say "The Python module limitsurf"
   CMAKE_BUILD_PARALLEL_LEVEL=$JOBS "$VENV/bin/python" -m pip install -qq \
     --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall \
-    -C "cmake.define.LIMITSURF_PREBUILT=$ROOT/build/cpp/native" "$ROOT" ||
+    --config-settings="cmake.define.LIMITSURF_PREBUILT=$ROOT/build/cpp/native" "$ROOT" ||
     fail "The Python module could not be built."
   echo "$hash" >"$stamp"
 }

@@ -79,8 +79,8 @@ def build(folder: Path, other_headers: list[Path], library: Library) -> None:
         pip = (sys.executable, "-m", "pip", "--disable-pip-version-check")
         options = ["-q", "--no-deps", "--no-build-isolation"]
         for name, value in {"LIMITSURF_PREBUILT": package, **library.compiler}.items():
-            options += ["-C", f"cmake.define.{name}={value}"]
-        options += ["-C", f"build-dir={library.modules}/{{wheel_tag}}"]
+            options.append(f"--config-settings=cmake.define.{name}={value}")
+        options.append(f"--config-settings=build-dir={library.modules}/{{wheel_tag}}")
         run(*pip, "wheel", *options, "-w", raw, ROOT)
         (own,) = Path(raw).glob("limitsurf-*.whl")
         wheels = [own]
