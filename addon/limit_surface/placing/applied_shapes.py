@@ -5,23 +5,16 @@ of one frame, but their places at rest are still those of the shape that was bou
 
 from __future__ import annotations
 
-import bpy
 import numpy as np
 
 from .. import ids
 from ..tasks.piecewise_job import Pieces, aside
-from .followers import live_modifier_of, modifier_of, was_bound
 from .posed_surface import SAME, PosedSurface, transformed
 from .relocation import Elements
 
 # Points must be so much nearer to the roots of this frame than to those at rest. Things beside the
 # surface are at the same distance from both where the surface has hardly moved.
 _NEARER = 0.5
-
-
-def is_stray(ob: bpy.types.Object) -> bool:
-    """Tells whether the object was bound by nodes, and has lost its modifier."""
-    return was_bound(ob) and modifier_of(ob) is None and live_modifier_of(ob) is None
 
 
 def rows_as_posed(elements: Elements, posed: PosedSurface) -> Pieces:

@@ -274,15 +274,12 @@ def anything_follows() -> bool:
 
 def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that were bound to a surface and have lost their modifier."""
-    return [
-        ob
-        for ob in own_objects_using(surface)
-        if _has_tiles(ob)
-        and is_placed(ob)
-        and modifier_of(ob) is None
-        and live_modifier_of(ob) is None
-        and surface_of(ob) == surface
-    ]
+    return [ob for ob in own_objects_using(surface) if is_stray(ob) and surface_of(ob) == surface]
+
+
+def is_stray(ob: bpy.types.Object) -> bool:
+    """Tells whether the object was bound by nodes, and has lost its modifier."""
+    return was_bound(ob) and modifier_of(ob) is None and live_modifier_of(ob) is None
 
 
 def astray_from(surface: bpy.types.Object) -> list[bpy.types.Object]:

@@ -19,7 +19,8 @@ from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import following
 from .added_vertices import AddedVertices
-from .applied_shapes import is_stray, rows_as_posed
+from .applied_shapes import rows_as_posed
+from .followers import is_stray
 from .posed_surface import Places as PosedPlaces
 from .posed_surface import PosedSurface, at_closest
 from .relocation import Elements, Relocation

@@ -19,9 +19,9 @@ from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import curve_points, following, live_binding, seals
-from .applied_shapes import is_stray, rows_as_posed
+from .applied_shapes import rows_as_posed
 from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
-from .followers import bound_to, holder_of, is_astray, is_own, live_modifier_of
+from .followers import bound_to, holder_of, is_astray, is_own, is_stray, live_modifier_of
 from .newcomers import bound_at_closest, put_places
 from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed

@@ -19,7 +19,7 @@ from ..reading import attributes, cage, transform
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside, at_once
 from . import capture_place, followers, following, proxy, seals, tables
-from .applied_shapes import is_stray, rows_as_posed
+from .applied_shapes import rows_as_posed
 from .places import NOWHERE, Places
 from .posed_surface import PosedSurface
 from .relocation import Elements
@@ -152,7 +152,7 @@ def _freeze(
     so that what is bound again does not move.
     """
     data, frozen = ob.data, _Frozen(ob.data)
-    was_applied = is_stray(ob)
+    was_applied = followers.is_stray(ob)
     frozen.values = {} if was_applied else _shown(ob, depsgraph)
     yield 0.0
     if any(len(attributes.read(data, name)) != len(v) for name, v in frozen.values.items()):
