@@ -49,7 +49,9 @@ SEARCHED = {
     "rays-above": "rays, from above",
     "rays-all-sides": "rays, from all sides",
 }
-ROWS = (*EVALUATED, "open", "pose", *SEARCHED)
+#: What is measured with whole meshes, and how the table calls it
+SET_UP = {"open": "opening", "pose": "new positions"}
+ROWS = (*EVALUATED, *SET_UP, *SEARCHED)
 ORDERS = ("sorted", "random")
 RESULTS = ("P", "P,D1", "P,D1,D2")  # their place is the order of the derivatives
 SAMPLES = (100_000, 1_000_000)
@@ -88,7 +90,7 @@ def lines(
                     if name.split()[-1] in results:
                         yield line
             if count == samples[-1]:
-                for row in (row for row in ("open", "pose") if row in rows):
+                for row in (row for row in SET_UP if row in rows):
                     of_meshes = compared(partial(set_up, row), partial(in_python, row, folder))
                     yield from (line for _name, line in of_meshes)
     with tempfile.TemporaryDirectory() as folder:
@@ -134,7 +136,11 @@ def set_up(what: str) -> Times:
     """
     wanted = f"^{what}/({'|'.join(OPENED)})/.*/limitsurf"
     text = output(BENCH, "--fresh-memory", f"--benchmark_filter={wanted}")
-    return {f"{what} {cells[0]}": float(cells[3]) for cells in cells_of(text) if cells[0] in OPENED}
+    return {
+        f"{SET_UP[what]}, {cells[0]}": float(cells[3])
+        for cells in cells_of(text)
+        if cells[0] in OPENED
+    }
 
 
 def searched() -> Times:
@@ -166,7 +172,7 @@ def output(*command: str | Path) -> str:
 def measure(what: str, folder: str) -> Times:
     if what == "searches":
         return measure_searches(folder)
-    if what in ("open", "pose"):
+    if what in SET_UP:
         return measure_set_up(what, folder)
     return measure_evaluation(what, folder)
 
@@ -194,7 +200,7 @@ def measure_set_up(what: str, folder: str) -> Times:
             continue
         else:
             call = partial(surface.set_positions, np.array(control_mesh.positions), threads=1)
-        times[f"{what} {row}"] = 1e9 * seconds(call) / surface.face_count
+        times[f"{SET_UP[what]}, {row}"] = 1e9 * seconds(call) / surface.face_count
     return times
 
 
