@@ -195,8 +195,9 @@ def test_live_ones_follow_with_their_neighbours_until_they_are_bound():
     added = len(ob.data.vertices) - before
     text = f"{added:,} vertices of Limit Mesh were added and have no places: "
     assert live_kept.trouble(ob).startswith(text)
+    assert live_kept.remedy(ob) == ids.FOLLOW
     follow(ob)
-    assert live_kept.trouble(ob) == ""
+    assert (live_kept.trouble(ob), live_kept.remedy(ob)) == ("", "")
 
 
 def test_the_panel_names_them():

@@ -126,7 +126,12 @@ def test_a_file_from_before_0_2_0_says_what_stays_still(tmp_path, capfd):
     bpy.ops.wm.open_mainfile(filepath=path)
     assert f"Limit Surface: {expected}" in capfd.readouterr().out
     bpy.context.scene.frame_set(5)
-    assert live_kept.trouble(bpy.data.objects["Limit Hair"]).startswith(expected)
+    hair = bpy.data.objects["Limit Hair"]
+    assert live_kept.trouble(hair).startswith(expected)
+    assert live_kept.remedy(hair) == ids.FOLLOW
+    scenes.activate(hair)
+    assert bpy.ops.object.limit_follow(mode="LIVE") == {"FINISHED"}
+    assert (live_kept.trouble(hair), live_kept.remedy(hair)) == ("", "")
 
 
 @pytest.mark.parametrize("how", ["LIVE", "NODES", "rebind"])

@@ -67,7 +67,12 @@ def trouble(ob: bpy.types.Object) -> str:
 
 def remedy(ob: bpy.types.Object) -> str:
     """Returns the operator that puts this right, if it is known."""
-    return ids.FOLLOW if why_astray(ob) else _reason(ob).remedy
+    if why_astray(ob):
+        return ids.FOLLOW
+    if (reason := _reason(ob)).text:
+        return reason.remedy
+    kept = thing(ob)
+    return ids.FOLLOW if kept.lost_frames or kept.added else ""
 
 
 def _reason(ob: bpy.types.Object) -> _Reason:
@@ -87,7 +92,7 @@ def _lost_frames(ob: bpy.types.Object, count: int) -> str:
     things = counted(count, "strands" if ob.type == "CURVES" else "points")
     return (
         f"{ob.name}: {things} stay still, because the file was made before version 0.2.0 of the "
-        "extension and lacks their rest orientation. Follow Limit Surface binds them where they are"
+        "extension and lacks their rest orientation"
     )
 
 
@@ -97,7 +102,7 @@ def _added(ob: bpy.types.Object, count: int) -> str:
     were = by_count(count, "was added and has no place of its own", "were added and have no places")
     return (
         f"{counted(count, 'vertices')} of {ob.name} {were}: they follow neighbors that have "
-        "places, and stay still without such neighbors. Follow Limit Surface gives them places"
+        "places, and stay still without such neighbors"
     )
 
 
