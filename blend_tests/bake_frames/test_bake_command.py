@@ -350,7 +350,7 @@ def test_hair_that_does_not_follow_on_faces_that_are_gone(waves, tmp_path, capfd
     hair = scenes.add_hair(waves, per_side=2, follow="NONE")
     change_topology(waves)
     assert bake(tmp_path, hair.name) == command.STALE_BINDING
-    message = f"60 of the 64 roots of {hair.name} are bound to faces that Flat does not have"
+    message = f"60 of the 64 places of {hair.name} are on faces that Flat does not have"
     assert message in capfd.readouterr().err
     assert not contents(tmp_path)
 

@@ -128,7 +128,7 @@ def test_files_that_were_never_saved_do_not_mix(tmp_path, capfd):
     assert bake(folder, "Cube", frames="3-4", options=NPZ) == command.BAD_ARGUMENTS
     err = capfd.readouterr().err
     assert f"{folder} holds a bake" in err
-    assert "never saved: save it first, and give another folder" in err
+    assert "never saved: save it first, and give another folder, or replace all" in err
     save(tmp_path / "shot.blend", 7)
     assert bake(folder, "Cube", frames="3-4", options=NPZ) == command.BAD_ARGUMENTS
     err = capfd.readouterr().err

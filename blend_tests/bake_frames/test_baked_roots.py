@@ -212,9 +212,7 @@ def test_points_of_the_tables_that_have_been_deleted(bound, tmp_path, capfd):
 
 def test_a_modifier_that_has_been_deleted(bound, tmp_path, capfd):
     bpy.data.objects["Limit Hair"].modifiers.clear()
-    check_refused(
-        tmp_path, capfd, "The modifier by which Limit Hair followed was deleted or applied"
-    )
+    check_refused(tmp_path, capfd, "Limit Hair has lost the modifier by which it followed")
 
 
 def test_a_surface_that_hands_nothing_on(bound, tmp_path, capfd):

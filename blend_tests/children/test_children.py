@@ -265,7 +265,7 @@ def test_refusals_change_nothing():
     attributes.write(ob.data, "side", "FLOAT", "FACE", np.zeros(16))
     refused("is of type FLOAT", guides, parting="FACE_ATTRIBUTE", parting_attribute="side")
     refused("choose the mode Curves", guides, mode="LIVE", target="VIEWPORT")
-    refused("cannot follow live", guides, mode="LIVE", follow="LIVE")
+    refused("cannot follow in the mode Live", guides, mode="LIVE", follow="LIVE")
     other = scenes.cross()
     refused("stands on Flat, not on Cross", other, guides=guides.name)
     bare = bpy.data.hair_curves.new("Bare")

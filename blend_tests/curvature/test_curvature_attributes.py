@@ -392,7 +392,7 @@ def test_locations_that_are_none_are_named(u, said):
     ob = paraboloid()
     hair = scenes.add_hair(ob, per_side=1)
     hair.data.attributes[ids.UV].data[1].vector = (u, 0.5)
-    reason = f"A location of {hair.name} has u = {said} and v = 0.5, which must be 0 to 1"
+    reason = f"A place of {hair.name} has u = {said} and v = 0.5, which must be 0 to 1"
     check_refused(f"{reason}: the attribute limit_uv was changed", on="ROOTS")
 
 

@@ -32,7 +32,7 @@ def applied_hair() -> tuple[bpy.types.Object, bpy.types.Object, np.ndarray]:
 def test_hair_is_bound_in_its_shape():
     ob, hair, shown = applied_hair()
     (trouble,) = State.of(hair).troubles(None)
-    assert "Limit Hair followed was deleted or applied" in trouble.text
+    assert "Limit Hair has lost the modifier by which it followed" in trouble.text
     assert trouble.remedy == ids.FOLLOW
     follow(hair)
     np.testing.assert_allclose(follow_truth.shown_strands(hair), shown, atol=4e-6)

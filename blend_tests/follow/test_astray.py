@@ -16,7 +16,12 @@ from limit_surface.bake_frames import command
 from limit_surface.follow import panel
 from limit_surface.placing import live_kept
 from limit_surface.placing.follow_state import State
-from limit_surface.placing.followers import followed_surface, is_astray
+from limit_surface.placing.followers import (
+    followed_surface,
+    is_astray,
+    live_modifier_of,
+    modifier_of,
+)
 from limit_surface.reading import attributes
 
 SCENES = ["grid with holes", "mixed polygons"]  # the same faces as the other surface, and others
@@ -69,7 +74,12 @@ def told(thing: bpy.types.Object) -> list[tuple[str, str]]:
 
 
 def trouble(names_it: str = "Object Data > Surface", name: str = "HairB") -> str:
-    return f"The modifier of {name} follows HeadA, but {name} belongs to HeadB ({names_it})"
+    ob = bpy.data.objects[name]
+    modifier = modifier_of(ob) or live_modifier_of(ob)
+    return (
+        f"{name} belongs to HeadB ({names_it}), but its modifier {modifier.name} names the surface "
+        "HeadA instead"
+    )
 
 
 def check(here: bpy.types.Object, hair: bpy.types.Object, way: str) -> None:
@@ -148,7 +158,9 @@ def test_another_surface_that_was_chosen_by_hand(scene, way, parent):
     assert trouble() in dict(told(hair))
     select(hair)
     if scene == "mixed polygons":
-        with pytest.raises(RuntimeError, match="not bound to the faces that HeadB has now: rebind"):
+        with pytest.raises(
+            RuntimeError, match="bound to other faces than those that HeadB has now"
+        ):
             bpy.ops.object.limit_follow(mode=way)
         assert bpy.ops.object.limit_rebind() == {"FINISHED"}
     else:

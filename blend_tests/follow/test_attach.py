@@ -332,7 +332,7 @@ def bind_hair(ob: bpy.types.Object, child: bpy.types.Object, mode: str = "NODES"
         (constrain_indirectly, "because Cross depends on Prop 0"),
         (give_parent, "Prop 0 has the parent Mother: clear it first"),
         (lambda ob, child: bind_hair(ob, child, "LIVE"), "Prop 0 follows a surface by itself"),
-        (bind_hair, "Prop 0 follows a surface by itself: unbind it first"),
+        (bind_hair, "Prop 0 follows a surface by itself: run Unbind from Limit Surface"),
     ],
 )
 def test_refusals_leave_everything_as_it_was(prepare, message):

@@ -124,8 +124,8 @@ def test_the_panel_says_that_things_are_at_rest():
     bpy.context.view_layer.update()
     told = (
         "The creases or subdivision settings of Holes have changed since its tables were made. "
-        "What follows it is at rest until you rebind it. Creases that are animated need the mode "
-        "Live"
+        "What follows Holes by nodes is at rest until you run Rebind to Limit Surface. If the "
+        "creases are animated, use the mode Live"
     )
     assert look(ob) == [(told, ids.REBIND)]
 

@@ -65,7 +65,7 @@ def test_a_modifier_behind_the_capture_is_told_where_nothing_subdivides():
     assert not State.of(ob).troubles(None)
     ob.modifiers.new("Cast", "CAST")
     (trouble,) = State.of(ob).troubles(None)
-    assert "has to be the last one" in trouble.text
+    assert "must be the last modifier" in trouble.text
 
 
 def test_data_of_two_surfaces_are_refused():

@@ -44,6 +44,13 @@ def subdivide_first(ob: bpy.types.Object) -> None:
     ob.modifiers.move(len(ob.modifiers) - 1, 0)
 
 
+LOST = (
+    "Limit Hair has lost the modifier by which it followed: the modifier was deleted or applied, "
+    "or its node group was deleted. If it was applied, first go to the frame in which that was done"
+)
+WITHOUT = (
+    "Without it, what follows Holes by nodes does not move, and what follows it live is slower"
+)
 BREAKS = {
     "tiles": (
         lambda _ob, _hair: bpy.data.objects.remove(table(ids.TILES_TABLE)),
@@ -55,13 +62,11 @@ BREAKS = {
     ),
     "modifier": (
         lambda _ob, hair: hair.modifiers.clear(),
-        "The modifier by which Limit Hair followed was deleted or applied, or its node group was "
-        "deleted",
+        LOST,
     ),
     "group": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.FOLLOW_HAIR_GROUP]),
-        "The modifier by which Limit Hair followed was deleted or applied, or its node group was "
-        "deleted",
+        LOST,
     ),
     "group within": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.SAMPLE_TILE_GROUP]),
@@ -77,7 +82,7 @@ BREAKS = {
     ),
     "capture": (
         lambda ob, _hair: remove_capture(ob),
-        "Holes: the modifier Limit Capture was deleted",
+        f"Holes: the modifier Limit Capture was deleted. {WITHOUT}",
     ),
     "place of capture": (
         lambda ob, _hair: move_capture(ob),
@@ -85,7 +90,7 @@ BREAKS = {
     ),
     "disabled capture": (
         lambda ob, _hair: disable_capture(ob),
-        "Holes: the modifier Limit Capture is disabled",
+        f"Holes: the modifier Limit Capture is disabled. {WITHOUT}",
     ),
 }
 
@@ -125,7 +130,8 @@ def test_a_duplicate_of_surface_and_hair_reads_tables_of_its_own_once_it_is_boun
     bpy.ops.object.duplicate()
     twin_hair = next(o for o in bpy.context.selected_objects if o.type == "CURVES")
     twin = next(o for o in bpy.context.selected_objects if o.type == "MESH")
-    assert look(twin) == [(f"{twin_hair.name} reads the tables of Holes", ids.FOLLOW)]
+    text = f"{twin_hair.name} follows {twin.name}, but reads the tables of Holes"
+    assert look(twin) == [(text, ids.FOLLOW)]
     bpy.ops.object.select_all(action="DESELECT")
     follow(twin)
     assert look(twin) == look(ob) == []
@@ -145,7 +151,7 @@ def test_a_duplicate_whose_original_was_deleted_is_named():
     twin = next(o for o in bpy.context.selected_objects if o.type == "MESH")
     for thing in (hair, ob):
         bpy.data.objects.remove(thing)
-    text = "Limit Hair.001 reads the tables of a surface that was deleted"
+    text = f"Limit Hair.001 follows {twin.name}, but reads the tables of a surface that was deleted"
     assert look(twin) == [(text, ids.FOLLOW)]
     follow(twin)
     assert look(twin) == []

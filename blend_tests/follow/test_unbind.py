@@ -183,7 +183,7 @@ def refused(match: str, *things: bpy.types.Object, **properties: object) -> None
 
 def test_refusals():
     ob = deforming("cross")
-    refused("Select hair or points that follow", ob)
+    refused("Select what follows a limit surface", ob)
     hair = scenes.add_hair(ob, follow="NODES")
     twin = hair.copy()
     bpy.context.collection.objects.link(twin)

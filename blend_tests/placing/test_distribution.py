@@ -144,7 +144,7 @@ def test_uniform_with_a_distance_is_refused():
 
 def test_too_low_a_density_is_refused():
     scenes.cross()
-    check_refused("so low that no location was found", distribution="UNIFORM", density=1e-5)
+    check_refused("so low that no place was found", distribution="UNIFORM", density=1e-5)
 
 
 @pytest.mark.parametrize("distribution", ["UNIFORM", "BLUE_NOISE"])

@@ -97,7 +97,7 @@ def test_a_surface_in_edit_mode_is_no_problem():
     assert not row.label.called
     column = drawn(bpy.types.VIEW3D_PT_limit_follow).column()
     said = " ".join(filter(None, labels(column)))
-    assert "What follows live moves when Cross leaves Edit Mode" in said
+    assert "While Cross is in Edit Mode, what follows it live stays still" in said
     bpy.ops.object.mode_set(mode="OBJECT")
 
 

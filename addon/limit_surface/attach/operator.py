@@ -138,7 +138,8 @@ def _check(objects: list[bpy.types.Object], surface: bpy.types.Object) -> None:
             )
         if modifier_of(ob) or live_modifier_of(ob):
             raise RefusalError(
-                f"{ob.name} follows a surface by itself: unbind it first, or do not attach it"
+                f"{ob.name} follows a surface by itself: run Unbind from Limit Surface on it "
+                "first, or do not attach it"
             )
         if ob in needed:
             raise RefusalError(

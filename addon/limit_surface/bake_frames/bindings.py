@@ -80,14 +80,16 @@ def _check_render(ob: bpy.types.Object) -> None:
     for modifier in before:
         if modifier.show_viewport == modifier.show_render:
             continue
-        if not hands_on and followers.live_modifier_of(ob) is not None:
+        deforms = modifier.type in modifier_kinds.DEFORMING
+        if deforms and not hands_on and followers.live_modifier_of(ob) is not None:
             raise RefusalError(
                 f"{ob.name} follows {surface.name} as the viewport shows it, because "
                 f"{surface.name} has no modifier {ids.CAPTURE_GROUP} directly before the "
-                "subdivision, and files of this format hold what renders show: enable the modifier "
-                f"{modifier.name} in both, or in neither, or use --format npz"
+                "subdivision, and files of this format hold what renders show: run "
+                f"object.limit_follow, which puts {ids.CAPTURE_GROUP} in its place, or enable the "
+                f"modifier {modifier.name} in both, or in neither, or use --format npz"
             )
-        if modifier.type not in modifier_kinds.DEFORMING:
+        if not deforms:
             raise RefusalError(
                 f"{ob.name} is bound to the faces that the viewport shows of {surface.name}, and "
                 "files of this format hold what renders show: enable the modifier "
@@ -159,7 +161,7 @@ def _check_growing(ob: bpy.types.Object) -> None:
     if live_children.modifier_of(ob) and live_children.surface_of(ob) is None:
         raise RefusalError(
             f"{ob.name} does not grow: its surface was deleted. Choose another surface in its "
-            "modifier, and rebind it"
+            "modifier, and run object.limit_rebind"
         )
 
 
@@ -191,7 +193,7 @@ def _check_faces(ob: bpy.types.Object, surface: bpy.types.Object, count: int) ->
     strays = int((face >= count).sum())
     if strays:
         raise RefusalError(
-            f"{strays:,} of the {counted(len(face), 'roots')} of {ob.name} "
-            f"{by_count(strays, 'is', 'are')} bound to faces that "
-            f"{surface.name} does not have: its topology has changed since they were placed"
+            f"{strays:,} of the {counted(len(face), 'places')} of {ob.name} "
+            f"{by_count(strays, 'is', 'are')} on faces that {surface.name} does not have: its "
+            "topology has changed since things were placed on it"
         )

@@ -55,7 +55,8 @@ class FrameFiles:
                 if self._frames() - replaced:
                     raise RefusalError(
                         f"{self._folder} holds frames but no {RECORD}, which would say from which "
-                        "file they come: delete the frames, or give another folder"
+                        "file they come: delete the frames, give another folder, or replace all "
+                        "frames in it with --overwrite"
                     )
                 self._replace(record, replaced, True)
                 return
@@ -81,7 +82,8 @@ class FrameFiles:
         if differ == {CONTENTS} and not record[FILE]:
             raise RefusalError(
                 f"{self._folder} holds a bake. Whether it is one of the open file cannot be known, "
-                "because this file was never saved: save it first, and give another folder"
+                "because this file was never saved: save it first, and give another folder, or "
+                "replace all frames in the folder with --overwrite"
             )
         if differ:
             reasons = "; ".join(_difference(key, there, record) for key in sorted(differ))

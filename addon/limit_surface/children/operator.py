@@ -150,8 +150,8 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             )
         if self.mode == "LIVE" and self.follow == "LIVE":
             raise RefusalError(
-                "Live children cannot follow live, because Geometry Nodes grow them: choose "
-                "another value of Follow"
+                "Live children grow by Geometry Nodes, so they cannot follow in the mode Live, in "
+                "which this extension moves things: choose another value of Follow"
             )
 
     def sources(self) -> Mapping[str, Choice]:

@@ -141,6 +141,6 @@ def _read(ob: bpy.types.Object, found: cage.Cage, surface: bpy.types.Object) -> 
             f"{ob.name} stands on faces that {surface.name} does not have: the faces have changed "
             "since it was placed"
         )
-    check_uv(uv[face != NOWHERE], f"A location of {ob.name}")
+    check_uv(uv[face != NOWHERE], f"A place of {ob.name}")
     matrix = transform.world_matrix(ob)
     return _Part(ObjectKey.of(ob), ObjectKey.of(surface), face, uv, matrix, found)

@@ -57,7 +57,7 @@ class LIMIT_PG_draw_point(bpy.types.PropertyGroup):
     )
     uv: FloatVectorProperty(
         name="UV",
-        description="u and v of the location, 0 to 1",
+        description="u and v of the point, 0 to 1",
         size=2,
         min=0.0,
         max=1.0,

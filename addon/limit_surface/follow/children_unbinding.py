@@ -82,8 +82,8 @@ def _read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Curves:
         shown = evaluated.data
         if surface is None or table is None or not count or len(shown.curves) != count:
             raise RefusalError(
-                f"{ob.name} grows no strands that could become curves: rebind it first, or delete "
-                "it"
+                f"{ob.name} grows no strands that could become curves: run Rebind to Limit Surface "
+                "first, or delete it"
             )
         position, radius = (attributes.read(shown, kind) for kind in (ids.POSITION, "radius"))
         materials = [material and material.original for material in shown.materials]

@@ -21,14 +21,14 @@ Things = dict[bpy.types.Object, list[bpy.types.Object]]  # by their surface
 
 NOTHING = (
     "Select hair or points that stand on a limit surface, or select other hair, points or "
-    "curves and, last, the mesh that they should follow"
+    "Curve objects and, last, the mesh that they should follow"
 )
 
 
 class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
     """Make the selected hair, points and meshes follow the limit surface that they stand on,
-    however its mesh deforms. Curves, and hair and points that this extension has not placed,
-    follow the closest points of the active mesh"""
+    however its mesh deforms. Curve objects, and hair and points that this extension has not
+    placed, follow the closest points of the active mesh"""
 
     bl_idname = ids.FOLLOW
     bl_label = "Follow Limit Surface"
@@ -48,8 +48,9 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
                 "LIVE",
                 "Live",
                 "This extension moves things in each frame. It is faster for very many "
-                "strands. Creases may be animated, and modifiers before the subdivision may add "
-                "and remove other faces than those on which things stand",
+                "strands. Creases may be animated. Modifiers before the subdivision may add and "
+                "remove faces. They must keep the faces on which things stand, and the numbers of "
+                "these faces",
                 1,
             ),
         ),

@@ -76,7 +76,7 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
         column.label(text=f"{follow} it live", icon="OBJECT_DATA")
     column.prop(context.scene, ids.LIVE)
     if waiting := next(filter(None, map(_edited_surface, things)), None):
-        text = f"What follows live moves when {waiting.name} leaves Edit Mode"
+        text = f"While {waiting.name} is in Edit Mode, what follows it live stays still"
         wrapped_text.draw(layout, text, "EDITMODE_HLT")
     for trouble in _live_troubles(things):
         _draw_trouble(layout, trouble)

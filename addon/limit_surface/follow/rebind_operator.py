@@ -20,9 +20,9 @@ _NOTHING = "Select a surface that something follows, or what follows it"
 
 
 class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
-    """Bind everything that follows the selected surface again. Do this after faces, creases or
+    """Bind again everything that follows the selected surface. Do this after faces, creases or
     settings of the Subdivision Surface modifier have changed. Live children are made again with
-    their settings"""
+    the same settings"""
 
     bl_idname = ids.REBIND
     bl_label = "Rebind to Limit Surface"
@@ -35,8 +35,8 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
             (
                 "CLOSEST",
                 "Closest Point",
-                "Use the point of the surface that is closest to the root's place at rest. Go to a "
-                "frame in which the surface has the shape that it had when things were bound: in "
+                "Use the point of the surface that is closest to the root or point at rest. Go to "
+                "a frame in which the surface has the shape that it had when things were bound: in "
                 "another pose they move to the places that are closest there",
                 0,
             ),
@@ -58,8 +58,8 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
     )
     distance: FloatProperty(
         name="Distance",
-        description="Largest distance from the surface, in world units. Roots that are "
-        "farther away are not bound. 0 means any distance",
+        description="Largest distance from the surface, in world units. Strands and points that "
+        "are farther away are not bound. 0 means any distance",
         min=0.0,
         default=0.0,
         subtype="DISTANCE",
@@ -107,5 +107,5 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
                     raise
                 self.report({"WARNING"}, str(error))
         self.summary = "\n".join(lines)
-        self.report({"INFO"}, self.summary.replace("\n", "; "))
+        self.report({"INFO"}, self.summary.replace("\n", ". "))
         return {"FINISHED"}

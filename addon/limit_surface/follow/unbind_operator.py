@@ -19,8 +19,8 @@ from .subjects import children_to_unbind, chosen_followers, selected
 
 
 class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
-    """Stop the selected hair and points from following. If only the surface is selected, stop
-    everything that follows it. Live children become curves"""
+    """Stop the selected objects from following (hair, points, decals, meshes, Curve objects). If
+    only the surface is selected, stop everything that follows it. Live children become curves"""
 
     bl_idname = ids.UNBIND
     bl_label = "Unbind from Limit Surface"
@@ -32,7 +32,13 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
         description="Which shape things keep",
         items=(
             ("SHOWN", "As Shown", "Keep the shape of this frame", 0),
-            ("REST", "At Rest", "Go back to the shape that things had when they were bound", 1),
+            (
+                "REST",
+                "At Rest",
+                "Go back to the shape at rest: the shape that things had when they were bound, "
+                "with what you have combed since",
+                1,
+            ),
         ),
     )
 
@@ -45,7 +51,8 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
                 bool(chosen_followers(context) or children_to_unbind(context))
                 or bool(_with_leftovers(context))
             ),
-            "Select hair or points that follow a limit surface, or live children",
+            "Select what follows a limit surface (hair, points, decals, meshes, Curve objects), "
+            "live children, or the surface itself",
         )
 
     def start(self, context: bpy.types.Context) -> set[str]:

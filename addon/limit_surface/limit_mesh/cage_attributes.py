@@ -86,7 +86,7 @@ def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
         if _is_of_follower(attribute):
             if _is_users(attribute):
                 found.notes.append(
-                    f"{name} is not carried over: the name is reserved for locations on a surface"
+                    f"{name} is not carried over: the name is reserved for places on a surface"
                 )
             continue
         if name in _OWN and not (name == "sharp_face" and with_sharp_faces):

@@ -123,9 +123,9 @@ class OBJECT_OT_limit_mesh(
     )
     store_locations: BoolProperty(
         name="Store Locations",
-        description="Store the location of each vertex on the surface, and the frame there, as "
-        "attributes limit_face, limit_uv, rest_root, rest_rot and limit_seal. A mesh that follows "
-        "always has them",
+        description="Store where each vertex is on the surface, and the directions of the surface "
+        "there (tangent and normal), as attributes limit_face, limit_uv, rest_root, rest_rot and "
+        "limit_seal. A mesh that follows always has them",
         default=False,
     )
     hide_original: BoolProperty(

@@ -22,9 +22,14 @@ def obstacle(surface: bpy.types.Object) -> str:
         reason = "was applied" if holds_applied(surface) else "was deleted"
     elif not (capture.show_viewport and capture.show_render):
         reason = "is disabled"
+    elif reason := _misplaced(surface, capture):
+        return f"{surface.name}: the modifier {ids.CAPTURE_GROUP} {reason}"
     else:
-        reason = _misplaced(surface, capture)
-    return f"{surface.name}: the modifier {ids.CAPTURE_GROUP} {reason}" if reason else ""
+        return ""
+    return (
+        f"{surface.name}: the modifier {ids.CAPTURE_GROUP} {reason}. Without it, what follows "
+        f"{surface.name} by nodes does not move, and what follows it live is slower"
+    )
 
 
 def was_run(ob: bpy.types.Object, evaluated: bpy.types.Object, mode: str) -> bool:
@@ -82,7 +87,12 @@ def _misplaced(surface: bpy.types.Object, capture: bpy.types.NodesModifier) -> s
     here = surface.modifiers.find(capture.name)
     if subsurf is None:
         later = [m for m in surface.modifiers[here + 1 :] if m.show_viewport or m.show_render]
-        return "has to be the last one, because none of them subdivides the mesh" if later else ""
+        if later:
+            return (
+                f"must be the last modifier, because no modifier of {surface.name} subdivides the "
+                "mesh"
+            )
+        return ""
     there = surface.modifiers.find(subsurf.name)
     if here > there or any(m.show_viewport for m in surface.modifiers[here + 1 : there]):
         return "is not directly before the Subdivision Surface modifier"

@@ -111,7 +111,7 @@ def check_pose(ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurf
     face = attributes.read(table.data, ids.FACE)
     if len(face) and int(face.max()) >= posed.in_object.face_count:
         raise RefusalError(
-            f"{ob.name} is bound to faces that no longer exist: use Rebind to Limit Surface"
+            f"{ob.name} is bound to faces that no longer exist: run Rebind to Limit Surface"
         )
     found = Locations(face, attributes.read(table.data, ids.UV))
     bound = attributes.read(table.data, ids.REST_ROOT)

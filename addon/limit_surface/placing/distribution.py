@@ -24,7 +24,7 @@ PACKING = 0.7
 
 NO_AREA = "The surface has no area"
 _NOWHERE = "The density is 0 everywhere: check its source and its range"
-_TOO_LOW = "The density is so low that no location was found: check its source and its range"
+_TOO_LOW = "The density is so low that no place was found: check its source and its range"
 
 
 @dataclass(frozen=True)

@@ -112,8 +112,9 @@ class State:
                 yield Trouble(f"A node group that {ob.name} needs was deleted", remedy)
         for ob in self.strays:
             text = (
-                f"The modifier by which {ob.name} followed was deleted or applied, or its node "
-                "group was deleted"
+                f"{ob.name} has lost the modifier by which it followed: the modifier was deleted "
+                "or applied, or its node group was deleted. If it was applied, first go to the "
+                "frame in which that was done"
             )
             yield Trouble(text, ids.FOLLOW)
         for ob in self.followers:
@@ -123,7 +124,8 @@ class State:
                 yield Trouble(f"The hidden tables that {ob.name} reads were deleted", ids.FOLLOW)
             elif of != self.surface:
                 whose = of.name if of else "a surface that was deleted"
-                yield Trouble(f"{ob.name} reads the tables of {whose}", ids.FOLLOW)
+                text = f"{ob.name} follows {self.surface.name}, but reads the tables of {whose}"
+                yield Trouble(text, ids.FOLLOW)
         is_read = self.followers or self.strays or self.samples or self.children
         if is_read and (text := capture_place.obstacle(self.surface)):
             yield Trouble(text, remedy)
@@ -168,8 +170,8 @@ class State:
             )
             if tables.points_of(table) is not None and not tables.fits(table):
                 text += (
-                    ". What follows it is at rest until you rebind it. Creases that are "
-                    "animated need the mode Live"
+                    f". What follows {self.surface.name} by nodes is at rest until you run Rebind "
+                    "to Limit Surface. If the creases are animated, use the mode Live"
                 )
             yield Trouble(text, ids.REBIND)
 

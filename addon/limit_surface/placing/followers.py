@@ -207,9 +207,11 @@ def why_astray(ob: bpy.types.Object) -> str:
     if followed is None or own is None or not is_astray(ob):
         return ""
     names_it = "Object Data > Surface" if ob.type == "CURVES" else "its parent"
+    modifier = modifier_of(ob) or live_modifier_of(ob)
+    assert modifier is not None
     return (
-        f"The modifier of {ob.name} follows {followed.name}, but {ob.name} belongs to {own.name} "
-        f"({names_it})"
+        f"{ob.name} belongs to {own.name} ({names_it}), but its modifier {modifier.name} names the "
+        f"surface {followed.name} instead"
     )
 
 

@@ -63,7 +63,14 @@ class Outcome:
         if not self.followers and not self.resting:
             return f"What follows {self.surface} was bound again"
         text = f"{counted(self.followers)} {self.surface} by Geometry Nodes"
-        return f"{text}; left at rest: {self.resting:,}" if self.resting else text
+        if not self.resting:
+            return text
+        stay = by_count(
+            self.resting,
+            "has no place on the surface and stays where it is",
+            "have no place on the surface and stay where they are",
+        )
+        return f"{text}; {self.resting:,} {stay}"
 
 
 def counted(followers: int) -> str:
@@ -112,7 +119,7 @@ class Request:
         for ob in everything:
             if holder_of(ob) not in moved and not is_placed(ob):
                 raise RefusalError(
-                    f"{ob.name} follows {surface.name}, but its locations on the limit surface "
+                    f"{ob.name} follows {surface.name}, but its places on the limit surface "
                     "were deleted: run Follow Limit Surface on it first"
                 )
         self._places = [moved.get(data) or Places.read(data) for data in holders(everything)]
@@ -259,11 +266,12 @@ def check_holds(ob: bpy.types.Object, surface: bpy.types.Object, now: str) -> No
     if holder is not None and not holds(holder, now):
         if is_astray(ob):
             raise RefusalError(
-                f"{ob.name} is not bound to the faces that {surface.name} has now: rebind it"
+                f"{ob.name} was bound to other faces than those that {surface.name} has now: run "
+                "Rebind to Limit Surface"
             )
         raise RefusalError(
-            f"{ob.name} was bound before the faces of {surface.name} changed: rebind it, or unbind "
-            "it first"
+            f"{ob.name} was bound before the faces of {surface.name} changed: run Rebind to Limit "
+            "Surface, or first Unbind from Limit Surface"
         )
 
 
@@ -402,7 +410,7 @@ def _way_to(ob: bpy.types.Object, surface: bpy.types.Object) -> str:
             f"choose {surface.name} in Object Data > Surface and run Rebind to Limit Surface, or "
             "run Snap to Limit Surface"
         )
-    unbound = "unbind it, " if followed_surface(ob) else ""
+    unbound = "run Unbind from Limit Surface, " if followed_surface(ob) else ""
     return f"{unbound}make {surface.name} its parent, and run Rebind to Limit Surface"
 
 

@@ -142,7 +142,7 @@ def _check_kind(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
         raise RefusalError(
             f"{ob.name} is a Curve object, whose data cannot hold a shape at rest: let it follow "
-            "by nodes, or convert it to Curves"
+            "by nodes, or convert it to hair curves (Object > Convert > Curves)"
         )
     stored = ob.data.attributes.get(ids.CUSTOM_NORMAL)
     if stored and stored.data_type == "FLOAT_VECTOR" and stored.domain != "CORNER":

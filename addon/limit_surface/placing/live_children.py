@@ -196,8 +196,8 @@ def obstacles(ob: bpy.types.Object, signature: str | None) -> Iterator[str]:
     guides = guides_of(ob)
     if guides is None or guides.type != "CURVES":
         yield (
-            f"The guides of {ob.name} were deleted: choose other guides in its modifier, and "
-            "rebind it"
+            f"The guides of {ob.name} were deleted: choose other guides in its modifier, and run "
+            "Rebind to Limit Surface"
         )
     else:
         before, now = groups.get_input(modifier_of(ob), nodes.GUIDE_COUNT), len(guides.data.curves)

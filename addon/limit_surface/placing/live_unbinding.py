@@ -63,8 +63,8 @@ class LiveUnbinding:
             following.remove_unused_capture(surface)
         names = ", ".join(ob.name for ob in self._things)
         remove_unused_carriers()
-        where = "where they are shown now" if self._shape == "SHOWN" else "where they are at rest"
-        return f"Unbound {where}: {names}"
+        shape = "of this frame" if self._shape == "SHOWN" else "at rest"
+        return f"Unbound in the shape {shape}: {names}"
 
 
 class _Now:

@@ -81,7 +81,7 @@ class Places:
         """Raises RefusalError where an attribute is missing, or holds something else."""
         if name := lacking(data, root_attributes(data)):
             raise RefusalError(
-                f"{data.name} stores no locations on a limit surface: its attribute {name} is "
+                f"{data.name} stores no places on a limit surface: its attribute {name} is "
                 "missing, or of another type or domain"
             )
         stored = {name: attributes.read(data, name) for name in ROOT_KINDS}
@@ -126,11 +126,11 @@ class Places:
         wrong = self.face[self.face >= faces]
         if len(wrong):
             raise RefusalError(
-                f"A location is on face {wrong[0]}, but {surface} has "
+                f"A place is on face {wrong[0]}, but {surface} has "
                 f"{counted(faces, 'faces')}: its topology has changed since things were placed on "
                 "it"
             )
-        check_uv(self.uv, f"A location on {surface}")
+        check_uv(self.uv, f"A place on {surface}")
 
     def check_count(self, data: bpy.types.ID) -> None:
         stored = len(data.attributes[ids.FACE].data)

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..counting import by_count, counted
+from ..counting import by_count
 from ..errors import RefusalError
 from ..reading import attributes, cage
 from ..tasks.job import Progress
@@ -48,11 +48,14 @@ class Rebound:
     def __str__(self) -> str:
         count = len(self.distances)
         are = by_count(count, "is", "are")
-        text = f"{counted(count, 'roots')} on {self.surface} {are} bound again"
+        text = f"{_counted(count)} on {self.surface} {are} bound again"
         if count:
             median, largest = np.median(self.distances), self.distances.max()
             they = by_count(count, "it", "they")
-            text += f", {they} moved by {median:.4g} (median), {largest:.4g} at most"
+            text += (
+                f". At rest {they} moved by {median:.4g} (median) and by at most {largest:.4g} "
+                "(world units)"
+            )
         return text
 
     @property
@@ -73,9 +76,13 @@ class Rebound:
             "they stay where they are, and are selected",
         )
         return (
-            f"{counted(self.lost, 'roots')} on {self.surface} could not be kept, because "
+            f"{_counted(self.lost)} on {self.surface} could not be kept, because "
             f"{self.reason}: {stay}"
         )
+
+
+def _counted(count: int) -> str:
+    return f"{count:,} {by_count(count, 'strand or point', 'strands and points')}"
 
 
 class Rebinding:

@@ -104,15 +104,16 @@ class Unbinding:
         _remove_unused(used - {None}, surfaces - {None})
         names = ", ".join(ob.name for ob in self._things)
         remove_unused_carriers()
-        where = "where they are shown now" if self._frozen else "where they are at rest"
-        return f"Unbound {where}: {names}"
+        shape = "of this frame" if self._frozen else "at rest"
+        return f"Unbound in the shape {shape}: {names}"
 
 
 def _check_own_data(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
         raise RefusalError(
             f"{ob.name} is a Curve object, which cannot store the shape that nodes give it in this "
-            "frame: choose the shape At Rest, or convert it to Curves first"
+            "frame: choose the shape At Rest, or convert it to hair curves first (Object > Convert "
+            "> Curves)"
         )
     others = [other.name for other in followers.sharers(ob)]
     if others:
@@ -157,8 +158,8 @@ def _freeze(
     yield 0.0
     if any(len(attributes.read(data, name)) != len(v) for name, v in frozen.values.items()):
         raise RefusalError(
-            f"The modifier by which {ob.name} follows gives it another number of points: unbind "
-            "it with the shape At Rest"
+            f"The modifier by which {ob.name} follows gives it another number of points: choose "
+            "the shape At Rest"
         )
     if not was_applied and all(
         np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()
@@ -171,7 +172,7 @@ def _freeze(
         were = by_count(count, "was", "were")
         raise RefusalError(
             f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound: run "
-            "Follow Limit Surface first, or unbind it with the shape At Rest"
+            "Follow Limit Surface first, or choose the shape At Rest"
         )
     if posed is None or not following.holds(data, following.signature(posed.cage)):
         face = attributes.read(data, ids.FACE)
@@ -262,7 +263,9 @@ def remove_leftovers(surface: bpy.types.Object) -> str:
     if had_capture and not has_capture:
         removed.append(f"the modifier {ids.CAPTURE_GROUP}")
     if had_applied and not capture_place.holds_applied(surface):
-        removed.append(f"the attributes of the modifier {ids.CAPTURE_GROUP}")
+        removed.append(
+            f"the attributes that the applied modifier {ids.CAPTURE_GROUP} left in the mesh"
+        )
     return f"Nothing follows {surface.name}. Removed: {', '.join(removed)}"
 
 
