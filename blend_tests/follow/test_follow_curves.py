@@ -332,7 +332,7 @@ def test_a_curve_whose_table_was_deleted_is_named_until_it_follows_again():
     follow(made, ob)
     bpy.data.objects.remove(curve_table(made))
     scenes.activate(ob)
-    with pytest.raises(RuntimeError, match="Curve follows Cross, but its locations .* deleted"):
+    with pytest.raises(RuntimeError, match="Curve follows Cross, but its places .* deleted"):
         bpy.ops.object.limit_hair_add(follow="NODES")
     follow(made, ob)
     assert bpy.ops.object.limit_hair_add(follow="NODES") == {"FINISHED"}

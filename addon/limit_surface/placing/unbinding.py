@@ -158,8 +158,8 @@ def _freeze(
     yield 0.0
     if any(len(attributes.read(data, name)) != len(v) for name, v in frozen.values.items()):
         raise RefusalError(
-            f"The modifier by which {ob.name} follows gives it another number of points: choose "
-            "the shape At Rest"
+            f"The modifier by which {ob.name} follows gives it another number of points: run "
+            "Unbind from Limit Surface with the shape At Rest"
         )
     if not was_applied and all(
         np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()
@@ -172,7 +172,7 @@ def _freeze(
         were = by_count(count, "was", "were")
         raise RefusalError(
             f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound: run "
-            "Follow Limit Surface first, or choose the shape At Rest"
+            "Follow Limit Surface first, or Unbind from Limit Surface with the shape At Rest"
         )
     if posed is None or not following.holds(data, following.signature(posed.cage)):
         face = attributes.read(data, ids.FACE)
