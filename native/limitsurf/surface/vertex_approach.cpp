@@ -20,6 +20,12 @@ namespace {
 /// magnitude above rounding, and far below any detail of a mesh.
 constexpr double kVanishing = 1e-10;
 
+/// The derivatives of a mode have rounding errors relative to its own size, about 1. Where products
+/// of the derivatives of two modes differ by less than this part of the derivatives, they count as
+/// equal: it is ten times that rounding. (Beside the boundary of a sector of N faces the two
+/// leading modes are nearly parallel: the difference is N^-3 of the derivatives or so.)
+constexpr double kEqualProducts = 1e-15;
+
 /// Eigenvalues that differ by less than this count as equal. Equal ones that come from different
 /// closed forms differ by rounding, which is three orders of magnitude less.
 constexpr double kEqualGrowth = 1e-13;
@@ -32,17 +38,19 @@ constexpr std::size_t kLeadingModes = 24;
 /// that grows and is above 1/4, the smaller one below.
 constexpr int kFirstModes = 256;
 
-/// A term n^power growth^n of du and dv.
+/// A term n^power growth^n of du and dv: derivatives of a mode, and its coefficient.
 struct Term {
   double growth;
   int power;
-  Vector3 du, dv;
+  double du, dv;
+  Vector3 coefficient;
 };
 
-/// A term n^power growth^n of du x dv.
+/// A term n^power growth^n of du x dv: what two modes contribute to it.
 struct CrossTerm {
   double growth;
   int power;
+  double area;  ///< du x dv of the two modes
   Vector3 normal;
 };
 
@@ -90,7 +98,7 @@ class ApproachTerms {
         scale_(scale),
         window_(outermost(basis, face)) {}
 
-  /// All terms, dominant ones first; terms that grow alike are added up.
+  /// All terms, dominant ones first.
   std::vector<Term> sorted() {
     for (const ModePair& pair : basis_.pairs()) {
       addPair(pair);
@@ -101,7 +109,7 @@ class ApproachTerms {
       }
     }
     std::stable_sort(terms_.begin(), terms_.end(), dominates<Term, Term>);
-    return merged();
+    return std::move(terms_);
   }
 
  private:
@@ -140,7 +148,7 @@ class ApproachTerms {
     PatchValues<double> patch;
     evaluateWindow<1>(table.grid + window_.b * tile_grid::kSize + window_.a, tile_grid::kSize,
                       window_.u, window_.v, patch);
-    terms_.push_back({growth, power, patch.du * coefficient, patch.dv * coefficient});
+    terms_.push_back({growth, power, patch.du, patch.dv, coefficient});
   }
 
   void addMode(int mode) {
@@ -170,19 +178,6 @@ class ApproachTerms {
     }
   }
 
-  std::vector<Term> merged() const {
-    std::vector<Term> result;
-    for (const Term& term : terms_) {
-      if (!result.empty() && !dominates(result.back(), term)) {
-        result.back().du += term.du;
-        result.back().dv += term.dv;
-      } else {
-        result.push_back(term);
-      }
-    }
-    return result;
-  }
-
   const Eigenbasis& basis_;
   const int face_;
   const Points& coefficients_;
@@ -195,40 +190,58 @@ class ApproachTerms {
 void turnBack(std::vector<Term>& terms, int turns) {
   for (Term& term : terms) {
     for (int i = 0; i < turns; ++i) {
-      const Vector3 du = term.du;
+      const double du = term.du;
       term.du = -term.dv;
       term.dv = du;
     }
   }
 }
 
-/// The first of the terms that is larger than `least`, or zero.
-Vector3 firstPresent(const std::vector<Term>& terms, Vector3 Term::* member, double least) {
-  for (const Term& term : terms) {
-    if ((term.*member).norm() > least) {
-      return term.*member;
+/// A derivative's leading term that is larger than `least`, or zero. Terms that grow alike are one.
+Vector3 leadingDerivative(const std::vector<Term>& terms, double Term::* derivative, double least) {
+  for (std::size_t i = 0; i < terms.size();) {
+    Vector3 sum = Vector3::Zero();
+    const Term& leading = terms[i];
+    for (; i < terms.size() && !dominates(leading, terms[i]); ++i) {
+      sum += terms[i].*derivative * terms[i].coefficient;
+    }
+    if (sum.norm() > least) {
+      return sum;
     }
   }
   return Vector3::Zero();
 }
 
-/// The leading term of the cross product: n^(p + q) (lambda mu)^n du_lambda x dv_mu, terms that
-/// grow alike added up.
+/// What two terms contribute to du x dv.
+CrossTerm crossTerm(const Term& a, const Term& b) {
+  const double area = a.du * b.dv - b.du * a.dv;
+  const double sides = std::abs(a.du) + std::abs(a.dv) + std::abs(b.du) + std::abs(b.dv);
+  if (!(std::abs(area) > kEqualProducts * sides)) {
+    return {a.growth * b.growth, a.power + b.power, 0, Vector3::Zero()};
+  }
+  return {a.growth * b.growth, a.power + b.power, std::abs(area),
+          area * a.coefficient.cross(b.coefficient)};
+}
+
+/// The leading term of the cross product, in which those that grow alike are added up. Products of
+/// coefficients count as zero if they are at most `least`.
 Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
   std::vector<CrossTerm> crosses;
-  for (const Term& a : terms) {
-    for (const Term& b : terms) {
-      crosses.push_back({a.growth * b.growth, a.power + b.power, a.du.cross(b.dv)});
+  for (auto a = terms.begin(); a != terms.end(); ++a) {
+    for (auto b = a + 1; b != terms.end(); ++b) {
+      crosses.push_back(crossTerm(*a, *b));
     }
   }
   std::stable_sort(crosses.begin(), crosses.end(), dominates<CrossTerm, CrossTerm>);
   for (std::size_t i = 0; i < crosses.size();) {
     Vector3 sum = Vector3::Zero();
+    double largest = 0;
     const CrossTerm& leading = crosses[i];
     for (; i < crosses.size() && !dominates(leading, crosses[i]); ++i) {
       sum += crosses[i].normal;
+      largest = std::max(largest, crosses[i].area);
     }
-    if (sum.norm() > least) {
+    if (sum.norm() > least * largest) {
       return sum;
     }
   }
@@ -246,8 +259,8 @@ VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring
       ApproachTerms(*table.rings[tile.ring].basis, tile.face, ring.coefficients, scale).sorted();
   turnBack(terms, turns);
   const double size = scale * ring.largest;
-  return {firstPresent(terms, &Term::du, kVanishing * size),
-          firstPresent(terms, &Term::dv, kVanishing * size),
+  return {leadingDerivative(terms, &Term::du, kVanishing * size),
+          leadingDerivative(terms, &Term::dv, kVanishing * size),
           leadingNormal(terms, kVanishing * size * size)};
 }
 

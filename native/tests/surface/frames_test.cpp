@@ -189,6 +189,64 @@ TEST(Frames, AtVerticesWithManyFacesHaveTheNormalOfTheTangentMasks) {
   }
 }
 
+/// The ring of a vertex on a smooth boundary, relative to the vertex and in a unit of its own.
+struct BoundaryRing {
+  std::vector<Vector3> edges, faces;
+
+  /// Catmull and Clark's rules.
+  void subdivide() {
+    const std::size_t count = faces.size();
+    const Vector3 vertex = (edges.front() + edges.back()) / 8;
+    for (std::size_t i = 0; i < count; ++i) faces[i] = (edges[i] + edges[i + 1] + faces[i]) / 4;
+    for (std::size_t i = 1; i < count; ++i) edges[i] = (edges[i] + faces[i - 1] + faces[i]) / 4;
+    edges.front() /= 2;
+    edges.back() /= 2;
+    double largest = 0;
+    for (auto* points : {&edges, &faces}) {
+      for (Vector3& point : *points) {
+        point -= vertex;
+        largest = std::max(largest, point.norm());
+      }
+    }
+    for (auto* points : {&edges, &faces}) {
+      for (Vector3& point : *points) point /= largest;
+    }
+  }
+
+  /// The part of the edges that varies as a sine with so many half waves.
+  Vector3 wave(int half_waves) const {
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const double share = static_cast<double>(i) / static_cast<double>(faces.size());
+      sum += std::sin(kPi<double> * half_waves * share) * edges[i];
+    }
+    return sum;
+  }
+};
+
+/// Subdivision leaves the two slowest sines of a large sector, which have the same normal on all of
+/// its faces. Beside the boundary both are small and nearly parallel.
+TEST(Frames, AtBoundaryVerticesWithManyFacesHaveTheNormalOfTheSlowestWaves) {
+  for (const int count : {12, 127, 560, 2000, 20000}) {
+    const Cage cage = fan(count, false, 3);
+    BoundaryRing ring;
+    const Vector3 vertex = cage.positions.row(cage.faces[0][0]);
+    for (int i = 0; i < count; ++i) {
+      const std::vector<int>& face = cage.faces[4 * i];  // the vertex, an edge's end, across, next
+      ring.edges.push_back(Vector3(cage.positions.row(face[1])) - vertex);
+      ring.faces.push_back(Vector3(cage.positions.row(face[2])) - vertex);
+    }
+    ring.edges.push_back(Vector3(cage.positions.row(cage.faces[4 * (count - 1)][3])) - vertex);
+    for (int step = 0; step < 160; ++step) ring.subdivide();
+    const Vector3 normal = ring.wave(2).cross(ring.wave(1)).normalized();
+    const LimitSurface surface = limitSurface(cage);
+    for (const int sector : {0, 1, count / 3, count - 2, count - 1}) {
+      const Vector3 found = frameOf(surface, {4 * sector, 0, 0}).col(2);
+      EXPECT_LE((found - normal).norm(), 1e-8) << count << " faces, sector " << sector;
+    }
+  }
+}
+
 TEST(Frames, AtOtherCornersAreTheSameAsSeenFromTheVertex) {
   // If the face's vertices are turned, so that the vertex lies at another corner, du becomes dv and
   // so on, while the normal stays the same.
