@@ -14,10 +14,11 @@ namespace limitsurf {
 
 /// Bound on the error of the distances of guide_weights, on smooth surfaces: relative to the
 /// distance, where that is at least an eighth of a face's side. On flat surfaces the error is below
-/// 5e-3 of such a side, as far as no cut or border stands in the way. Around poles, where guides
-/// are much closer to each other than the triangles are long, one distance in a thousand may be off
-/// by up to 4 %; so may one in 2,500 where there are more than five guides on each face, and as
-/// many are missed though they are among the nearest.
+/// 5e-3 of such a side, as far as no cut or border stands in the way. A few distances may be off by
+/// up to 4 %: those around the end of a cut that is within a face of both ends of the way; one in a
+/// thousand around poles, where guides are much closer to each other than the triangles are long;
+/// and one in 2,500 where there are more than five guides on each face, where as many guides are
+/// missed though they are among the nearest.
 constexpr double kGuideDistanceError = 0.01;
 
 /// The nearest guides of places on a surface, `count` in each row, the nearest first. Where there

@@ -48,9 +48,10 @@ fewer guides can be reached, guide is -1, weight 0 and distance inf.
 
 Error: distances are measured on triangles whose vertices lie on the surface, by fast marching with
 circular wave fronts. They are within 1 % from an eighth of a face's side on, and on flat surfaces within
-5e-3 of such a side, except behind cuts and borders. Around a pole, where guides are closer together than
-the triangles are long, one distance in a thousand may be off by up to 4 %; so may one in 2,500 where there
-are more than five guides on each face. Distances are those of the present pose; for distances in the
+5e-3 of such a side, except behind cuts and borders. A few distances may be off by up to 4 %: those around
+the end of a cut that is within a face of both ends of the way; one in a thousand around a pole, where
+guides are closer together than the triangles are long; and one in 2,500 where there are more than five
+guides on each face. Distances are those of the present pose; for distances in the
 world, pose the surface there. The result has the same bits for any number of threads.
 
 Raises LocationError and MeshError as evaluate() does, MeshError for cuts that are no edges of the mesh,

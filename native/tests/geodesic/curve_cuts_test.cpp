@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <utility>
 
@@ -177,6 +178,47 @@ TEST(SlowCurveCuts, LeadAroundTheirEnds) {
     }
   }
   EXPECT_GT(around, 300);
+}
+
+/// Cut along edges, with few guides, so that ways begin and end within a face of the end.
+TEST(CurveCuts, LeadAroundTheirEndsFromGuidesNearThem) {
+  const LimitSurface surface = flatSheet(6, 0);
+  const Vector3 end(3, 3, 0);
+  GuideOptions options;
+  options.count = 2;
+  for (int y = 0; y < 3; ++y) {
+    options.cuts.emplace_back(7 * y + 3, 7 * (y + 1) + 3);
+  }
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> offset(-0.9, 0.9);
+  const auto placesNearEnd = [&](Eigen::Index count) {
+    Points points = Points::Zero(count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      points.row(i) << end.x() + offset(random), end.y() + offset(random), 0;
+    }
+    return locationsOf(surface, points);
+  };
+  int measured = 0, inexact = 0;
+  double worst = 0;
+  for (int arrangement = 0; arrangement < 30; ++arrangement) {
+    const Locations guides = placesNearEnd(5), at = placesNearEnd(500);
+    const GuideWeights found = guideWeights(surface, guides, at, options);
+    const Points p = surface.evaluate(at).position, g = surface.evaluate(guides).position;
+    for (std::size_t entry = 0; entry < found.guide.size(); ++entry) {
+      const double truth =
+          aroundEnd(p.row(static_cast<Eigen::Index>(entry / 2)), g.row(found.guide[entry]), end);
+      if (truth >= 0.125) {
+        const double error = std::abs(found.distance[entry] - truth) / truth;
+        worst = std::max(worst, error);
+        inexact += error > kGuideDistanceError;
+        ++measured;
+      }
+    }
+  }
+  std::printf("  worst %.4f; %d of %d above 1 %%\n", worst, inexact, measured);
+  EXPECT_GT(measured, 25000);
+  EXPECT_LE(worst, 0.04);
+  EXPECT_LE(inexact, measured / 50);
 }
 
 TEST(CurveCuts, AreGeodesicOnACylinder) {
