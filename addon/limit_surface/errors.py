@@ -10,6 +10,10 @@ class CageError(RefusalError):
     """The object has no control mesh that can be evaluated."""
 
 
+class NotNowError(CageError):
+    """The object has a control mesh, which cannot be read at the moment."""
+
+
 class MultiresolutionError(CageError):
     """The object has no control mesh because of a Multiresolution modifier."""
 

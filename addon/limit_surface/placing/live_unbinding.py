@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..reading import attributes, transform
+from ..reading import attributes, cage, transform
 from . import followers, following, live, live_attributes, live_binding, live_source
 from .places import NOWHERE, Places
 from .posed_surface import Places as PosedPlaces
@@ -39,6 +39,8 @@ class LiveUnbinding:
                 followers.check_not_astray(ob)
         self._things, self._shape = list(things), shape
         self._surfaces = {ob: live.surface_of(ob) for ob in things}
+        for surface in set(self._surfaces.values()) - {None}:
+            cage.check_left_edit_mode(surface)  # edits of what follows it could not be taken up
         self._now: dict[bpy.types.Object, _Now] = {}
         if shape == "SHOWN":
             posed = {s: posed_if_there(s, depsgraph) for s in set(self._surfaces.values())}

@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import ids, native
 from ..counting import by_count, counted
-from ..errors import CageError, RefusalError
+from ..errors import CageError, NotNowError, RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, transform
@@ -130,9 +130,13 @@ def _check_own_data(ob: bpy.types.Object) -> None:
 def posed_if_there(
     surface: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph
 ) -> PosedSurface | None:
-    """Returns the surface as it is now; None where there is none any more."""
+    """Returns the surface as it is now; None where there is none any more. Raises NotNowError for
+    one that is there and cannot be read now.
+    """
     try:
         return PosedSurface(cage.read(surface, depsgraph)) if surface else None
+    except NotNowError:
+        raise
     except CageError:
         return None
 

@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..errors import CageError, MultiresolutionError
+from ..errors import CageError, MultiresolutionError, NotNowError
 from . import (
     animated_values,
     attributes,
@@ -141,6 +141,14 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, puts_back: boo
         return found
 
 
+def check_left_edit_mode(ob: bpy.types.Object) -> None:
+    """Raises NotNowError for a mesh in Edit Mode, perhaps by way of another object that has the
+    same mesh: the mesh has no faces for others then.
+    """
+    if ob.type == "MESH" and ob.data.is_editmode:
+        raise NotNowError(f"{ob.name} is in Edit Mode: leave it first")
+
+
 def why_not_on_mesh(ob: bpy.types.Object, found: Cage) -> str:
     """Returns the reason why the mesh cannot store values of the cage's vertices, or None."""
     mesh = ob.data
@@ -161,8 +169,7 @@ def opened(
     puts_back: bool = True,
 ) -> Iterator[tuple[Cage, bpy.types.Mesh]]:
     """Yields the cage, and the mesh that it is read from, which lasts as long as the context."""
-    if ob.data.is_editmode:  # the mesh has no faces for others then
-        raise CageError(f"{ob.name} is in Edit Mode: leave it first")
+    check_left_edit_mode(ob)
     cut = rules.place_of_subsurf(ob)
     check_modifiers(ob, cut)
     found = rules.read(rules.find_subsurf(ob))
@@ -239,7 +246,7 @@ def evaluated_copy(
                 evaluated = copy.evaluated_get(layer.depsgraph)
                 # where this is animated or driven, the object is not evaluated
                 if evaluated.hide_viewport:
-                    raise CageError(f"{ob.name} is hidden in the viewport at this frame")
+                    raise NotNowError(f"{ob.name} is hidden in the viewport at this frame")
                 yield evaluated
             finally:
                 if is_of_another_frame:
