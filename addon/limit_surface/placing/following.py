@@ -369,7 +369,7 @@ def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:
         )
     if surface.name not in scene.objects:
         raise RefusalError(f"{surface.name} is not in the scene {scene.name}")
-    cage.check_left_edit_mode(surface)
+    cage.check_not_edited(surface)
     ambiguous = rules.why_ambiguous(surface)
     if ambiguous:
         raise RefusalError(ambiguous)
@@ -433,4 +433,4 @@ def check_editable(ob: bpy.types.Object) -> None:
             f"{ob.name} is a library override, and Blender does not save what it is bound to: make "
             "it and its data local first, or do this in the file from which it comes"
         )
-    cage.check_left_edit_mode(ob)  # other types than meshes have no data of their own there
+    cage.check_not_edited(ob)  # other types than meshes have no data of their own there

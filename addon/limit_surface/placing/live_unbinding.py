@@ -40,7 +40,7 @@ class LiveUnbinding:
         self._things, self._shape = list(things), shape
         self._surfaces = {ob: live.surface_of(ob) for ob in things}
         for surface in set(self._surfaces.values()) - {None}:
-            cage.check_left_edit_mode(surface)  # edits of what follows it could not be taken up
+            cage.check_not_edited(surface)  # edits of what follows it could not be taken up
         self._now: dict[bpy.types.Object, _Now] = {}
         if shape == "SHOWN":
             posed = {s: posed_if_there(s, depsgraph) for s in set(self._surfaces.values())}

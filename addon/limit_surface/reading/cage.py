@@ -141,12 +141,16 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, puts_back: boo
         return found
 
 
-def check_left_edit_mode(ob: bpy.types.Object) -> None:
-    """Raises NotNowError for a mesh in Edit Mode, perhaps by way of another object that has the
-    same mesh: the mesh has no faces for others then.
+def check_not_edited(ob: bpy.types.Object) -> None:
+    """Raises NotNowError for a mesh whose faces Blender keeps elsewhere for a time: in Edit Mode,
+    perhaps by way of another object that has the same mesh, and in Sculpt Mode with Dyntopo.
     """
-    if ob.type == "MESH" and ob.data.is_editmode:
+    if ob.type != "MESH":
+        return
+    if ob.data.is_editmode:
         raise NotNowError(f"{ob.name} is in Edit Mode: leave it first")
+    if ob.use_dynamic_topology_sculpting:
+        raise NotNowError(f"{ob.name} is in Sculpt Mode with Dyntopo: leave it first")
 
 
 def why_not_on_mesh(ob: bpy.types.Object, found: Cage) -> str:
@@ -169,7 +173,7 @@ def opened(
     puts_back: bool = True,
 ) -> Iterator[tuple[Cage, bpy.types.Mesh]]:
     """Yields the cage, and the mesh that it is read from, which lasts as long as the context."""
-    check_left_edit_mode(ob)
+    check_not_edited(ob)
     cut = rules.place_of_subsurf(ob)
     check_modifiers(ob, cut)
     found = rules.read(rules.find_subsurf(ob))
