@@ -51,7 +51,7 @@ def hide_in_this_frame(ob: bpy.types.Object) -> None:
 
 def stored(ob: bpy.types.Object) -> dict[str, object]:
     """Returns what an object stores: its modifiers, attributes and properties."""
-    names = [name for name in ob.data.attributes.keys() if not name.startswith(".")]
+    names = [name for name, _ in ob.data.attributes.items() if not name.startswith(".")]
     values = {name: attributes.read(ob.data, name).tobytes() for name in names}
     return values | {"modifiers": ob.modifiers.keys(), "properties": sorted(ob.data.keys())}
 

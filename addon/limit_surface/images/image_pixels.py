@@ -280,6 +280,7 @@ def attach(image: bpy.types.Image, path: str | Path) -> None:
     image.filepath = str(path)
     image.reload()
     image.colorspace_settings.name = colorspace
+    pixel_undo.record_rounded(image)
 
 
 def of_tile(path: str | Path, tile: int) -> str:

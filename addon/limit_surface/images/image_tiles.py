@@ -9,7 +9,7 @@ keeps its path, and the files at that path do not change.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -68,11 +68,29 @@ def read_all(image: bpy.types.Image) -> dict[int, np.ndarray]:
     check_readable(image)
     found = {}
     for number in sizes(image):
-        with _tile_file(image, number) as file, _loaded(file) as tile:
-            tile.colorspace_settings.name = image.colorspace_settings.name
-            tile.alpha_mode = image.alpha_mode
-            found[number] = _pixels(tile)
+        with _tile_file(image, number) as file:
+            found[number] = _from_file(image, file)
     return found
+
+
+def shown_from_files(
+    image: bpy.types.Image, are_wanted: Callable[[Mapping[int, np.ndarray]], bool]
+) -> bool:
+    """Has the image show its files again, and returns true, if it has files that give the wanted
+    pixels. An image with packed files is left as it is.
+    """
+    if image.source not in ("FILE", "TILED") or image.packed_files or not image.filepath_raw:
+        return False
+    tiles = [tile.number for tile in image.tiles] if image.source == "TILED" else [FIRST_TILE]
+    try:
+        found = {number: _from_file(image, _path_of_tile(image, number)) for number in tiles}
+    except RefusalError:  # a file is missing, or cannot be read any more
+        return False
+    if not are_wanted(found):
+        return False
+    image.update_tag()
+    image.reload()
+    return True
 
 
 def write_some(
@@ -185,6 +203,14 @@ def _tile_file(image: bpy.types.Image, number: int) -> Iterator[str]:
         with temporary_files.written(what):
             file.write_bytes(packed[0].packed_file.data)
         yield str(file)
+
+
+def _from_file(image: bpy.types.Image, path: str) -> np.ndarray:
+    """Returns the pixels that the image would show from this file."""
+    with _loaded(path) as tile:
+        tile.colorspace_settings.name = image.colorspace_settings.name
+        tile.alpha_mode = image.alpha_mode
+        return _pixels(tile)
 
 
 @contextmanager

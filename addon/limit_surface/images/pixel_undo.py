@@ -11,8 +11,8 @@ again.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from uuid import uuid4
 
@@ -20,6 +20,7 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..errors import RefusalError
 from . import image_tiles, temporary_files
 
 MOST_KEPT = 8 << 30  # in bytes; the oldest pixels are dropped where more would be stored
@@ -61,6 +62,8 @@ class _Kept:
         if not self.files:  # there were no pixels, mostly because the image's file was missing
             image.reload()
             return
+        if image_tiles.shown_from_files(image, self.holds):
+            return  # the image is not marked as changed then
         tiles = {number: np.load(file) for number, file in self.files.items() if file.exists()}
         if tiles.keys() == self.files.keys():
             image_tiles.write_some(image, tiles)
@@ -121,6 +124,24 @@ def recorded(image: bpy.types.Image) -> Iterator[Callable[[Mapping[int, np.ndarr
     image[ids.PIXELS_MARK] = mark
     _shown[image.session_uid] = _Shown(mark, after)
     _drop_oldest()
+
+
+def record_rounded(image: bpy.types.Image) -> None:
+    """Records that the pixels of the last write were rounded since, because the image shows them
+    from the file to which they were saved.
+    """
+    shown = _shown.get(image.session_uid)
+    if not shown or shown.mark not in _writes or shown.mark != image.get(ids.PIXELS_MARK):
+        return
+    exact = _writes[shown.mark].after
+    with suppress(RefusalError):  # the image has changed already; redo gives what is not rounded
+        now = image_tiles.read_all(image)
+        if exact.holds(now):
+            return
+        after = _Kept.of(now, f"{shown.mark}_rounded", image.name)
+        _writes[shown.mark] = replace(_writes[shown.mark], after=after)
+        _shown[image.session_uid] = _Shown(shown.mark, after)
+        _drop([exact])
 
 
 def attach_handlers() -> None:
