@@ -120,11 +120,27 @@ def missing(data: bpy.types.ID) -> str:
     return lacking(data, needed | root_attributes(data))
 
 
+def note_written(data: bpy.types.ID, frame: float, matrix: np.ndarray) -> None:
+    """Stores when and where the points were written: as a text, because Blender prints a warning in
+    each frame when it exports a property of so many numbers to USD.
+    """
+    now = " ".join(map(repr, [float(frame), *matrix.ravel().tolist()]))
+    if data.get(ids.LIVE_WRITTEN) != now:
+        data[ids.LIVE_WRITTEN] = now
+
+
 def written(data: bpy.types.ID) -> Written | None:
     stored = data.get(ids.LIVE_WRITTEN)
-    if stored is None or len(stored) != 17:
+    if stored is None:
         return None
-    numbers = np.array(stored, np.float64)
+    # files that were made before version 0.2.0 have numbers
+    each = stored.split() if isinstance(stored, str) else stored
+    try:
+        numbers = np.array(each, np.float64)
+    except (TypeError, ValueError):  # somebody has changed the property
+        return None
+    if numbers.shape != (17,):
+        return None
     return Written(float(numbers[0]), numbers[1:].reshape(4, 4))
 
 

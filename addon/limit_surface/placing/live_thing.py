@@ -29,6 +29,7 @@ from .live_attributes import (
     added,
     lost_frames_of,
     moved_names,
+    note_written,
     place_domain,
     points_of,
     rest_name,
@@ -195,9 +196,7 @@ class LiveThing:
         if has_moved:
             tag(data)
             self._write_prints(data, _without_zero(prints))
-        now = np.array([frame, *matrix.ravel()])
-        if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
-            data[ids.LIVE_WRITTEN] = now.tolist()
+        note_written(data, frame, matrix)
         return has_moved
 
     def _pose_vectors(
