@@ -9,7 +9,7 @@ constexpr const char* kSubdividedFacesDoc =
 The subdivided mesh may have any shape (it may have been sculpted) and any order of vertices. Its faces
 must be those of the base subdivided 0 to 12 times, in Blender's order (Subdivision Surface,
 Multiresolution) or in OpenSubdiv's (corner by corner, recursively), and must share vertices in the same
-way. All this is checked; positions are not used.
+way. All this is checked; positions are not used. These places cannot be copied or pickled.
 
     faces = limitsurf.SubdividedFaces(base.mesh, sculpted.mesh)
     there = faces.locate(face, uv)                  # the same places on the subdivided mesh

@@ -247,7 +247,7 @@ constexpr const char* kSurfaceDataDoc =
     R"(Data on a limit surface, evaluated exactly.
 
 LimitSurface.face_varying(), .vertex_data() and .varying() return them. They do not depend on the
-positions of the surface, and may outlive it. They cannot be pickled.
+positions of the surface, and may outlive it. They cannot be copied or pickled.
 )";
 
 constexpr const char* kEvaluateDataDoc =

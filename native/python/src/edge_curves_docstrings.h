@@ -10,7 +10,7 @@ len() is the number of curves. They are sorted by their first edges, in the orde
 the edges. A curve runs in the direction in which the first face of its first edge uses that edge, so this
 face is on its left; a closed curve begins with that edge. Curves of boundaries therefore have the surface
 on their left. The curves belong to the pose that the surface had when they were made. They cannot be
-pickled.
+copied or pickled.
 )";
 
 constexpr const char* kEdgeCurvesMakerDoc =

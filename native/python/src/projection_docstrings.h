@@ -6,6 +6,8 @@ namespace limitsurf::python {
 constexpr const char* kFilteredImageDoc =
     R"(An image that can be sampled under footprints of any size and shape without aliasing.
 
+It cannot be copied or pickled.
+
 Parameters
 ----------
 pixels : (h, w, c) array of float

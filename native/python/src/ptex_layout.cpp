@@ -24,6 +24,7 @@ meet there, so that bilinear interpolation within a tile needs no neighbouring t
 face to face, with one exception: two sub-faces of an n-gon that meet the side of a quad have twice as many
 pixels along it, so there the values agree at the pixels of the quad, and differ between them. Tiles stand in rows of `columns` from the lower left corner of the image: the tile of face f
 begins at the pixel (f % columns, f // columns) * (resolution + 1).
+A layout cannot be copied or pickled.
 
     layout = limitsurf.PtexLayout(surface.face_count, 64)
     texels = layout.texels()                              # .x .y .face .uv of every pixel

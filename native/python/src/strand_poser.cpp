@@ -48,7 +48,9 @@ rotation of a bound strand that is not finite, naming its row. Cost: O(n). Memor
 strand.)";
 
 constexpr char kClassDoc[] =
-    R"(Strands that are bound to a limit surface (LimitSurface.strand_poser()). They cannot be pickled.
+    R"(Strands that are bound to a limit surface (LimitSurface.strand_poser()).
+
+They cannot be copied or pickled.
 
 All arrays of points are float32, as Blender's attributes are; others are converted. `out` receives the
 result: a contiguous float32 array, which may be the input itself, but not overlap it in part; without it
