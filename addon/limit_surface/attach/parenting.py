@@ -15,7 +15,7 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import ids
-from ..reading import private_scene
+from ..reading import private_scene, rigid_bodies
 
 # The time that Blender takes to remove objects grows with the square of their number.
 MOST_PROBES = 256
@@ -52,9 +52,9 @@ def _scene_for(
     context: bpy.types.Context, count: int
 ) -> Iterator[tuple[bpy.types.Scene, bpy.types.ViewLayer]]:
     """Yields the user's scene and view layer for a few probes. Many would cause all of its objects
-    to be evaluated many times, so they are in a private scene.
+    to be evaluated many times, so they are in a private scene, unless rigid bodies move there.
     """
-    if count <= MOST_PROBES:
+    if count <= MOST_PROBES or rigid_bodies.are_simulated(context.scene):
         yield context.scene, context.view_layer
         return
     with private_scene.like(context.scene) as scene:

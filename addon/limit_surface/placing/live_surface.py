@@ -202,7 +202,8 @@ def _evaluated_anew(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ca
         for modifier in copy.modifiers if depsgraph.mode == "RENDER" else ():
             modifier.show_viewport = modifier.show_render
 
-    with cage.evaluated_copy(ob, rules.place_of_subsurf(ob), depsgraph, enable) as evaluated:
+    cut = rules.place_of_subsurf(ob)
+    with cage.evaluated_copy(ob, cut, depsgraph, enable, settled=cut) as evaluated:
         return _captured(ob, evaluated, evaluated.data, "VIEWPORT")
 
 

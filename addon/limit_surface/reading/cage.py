@@ -10,9 +10,9 @@ Both are removed before other code can see them, and no frame-change handlers ar
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
 import numpy as np
@@ -23,8 +23,10 @@ from . import (
     animated_values,
     attributes,
     private_scene,
+    rigid_bodies,
     rules,
     sharpness,
+    shown_stack,
     subdivided_mesh,
     transform,
     uv_map,
@@ -176,8 +178,9 @@ def opened(
     check_not_edited(ob)
     cut = rules.place_of_subsurf(ob)
     check_modifiers(ob, cut)
+    _check_parent(ob)
     found = rules.read(rules.find_subsurf(ob))
-    with evaluated_copy(ob, cut, depsgraph, adjust, puts_back) as evaluated:
+    with evaluated_copy(ob, cut, depsgraph, adjust, puts_back, settled=cut) as evaluated:
         mesh = evaluated.data
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
@@ -224,43 +227,117 @@ def evaluated_copy(
     depsgraph: bpy.types.Depsgraph,
     adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
     puts_back: bool = True,
+    settled: int | None = None,
+    subject: Subject | None = None,
 ) -> Iterator[bpy.types.Object]:
     """Yields the object evaluated with its first `cut` modifiers; `adjust` may change the copy and
     its private scene before that. With `puts_back`, animated values that were changed without a key
     are taken as they are shown, and kept. Blender updates the user's scene afterwards if there are
     any, so whoever is called by each update must not ask for it.
+
+    The first `settled` modifiers are those that `adjust` neither removes nor moves. Where their
+    number is given, a mesh that depends on rigid bodies is read as it is shown, with its matrix.
+    Otherwise only its shape is right, and CageError is raised where bodies change it, as seen from
+    the `subject`: by default the object itself.
     """
     global _busy
     was_busy, _busy = _busy, True
     try:
         with private_scene.like(depsgraph.scene) as scene, _copied(ob) as copy:
-            copy.hide_viewport = False
-            for modifier in copy.modifiers[cut:]:
-                copy.modifiers.remove(modifier)
-            if adjust:
-                adjust(copy, scene)
-            scene.collection.objects.link(copy)
-            layer = private_scene.layer(scene, depsgraph.view_layer)
-            layer.update()
-            is_of_another_frame = scene.frame_float != depsgraph.scene.frame_float
-            puts_back_now = puts_back and not is_of_another_frame
-            if puts_back_now and _put_back(layer, depsgraph, copy, ob):
-                layer.update()
+            run = _Run(ob, depsgraph, adjust, puts_back, scene)
             try:
-                evaluated = copy.evaluated_get(layer.depsgraph)
+                evaluated = run.evaluate(copy, cut)
                 # where this is animated or driven, the object is not evaluated
                 if evaluated.hide_viewport:
                     raise NotNowError(f"{ob.name} is hidden in the viewport at this frame")
-                yield evaluated
+                with ExitStack() as stack:
+                    if run.needs_simulation(copy, cut, settled, subject or Subject(copy, ob)):
+                        assert settled is not None
+                        runs = {m.name: m.show_viewport for m in evaluated.modifiers[:settled]}
+                        scene.collection.objects.unlink(copy)
+                        standing = shown_stack.standing(ob, depsgraph, settled, runs)
+                        evaluated = run.evaluate(stack.enter_context(standing), cut - settled)
+                    yield evaluated
             finally:
-                if is_of_another_frame:
-                    # evaluation has written animated values into the file: those of that frame
-                    scene.frame_float = depsgraph.scene.frame_float
-                    layer.update()
-                    if puts_back:
-                        _put_back(layer, depsgraph, copy, ob)
+                run.go_back(copy)
     finally:
         _busy = was_busy
+
+
+class Subject(NamedTuple):
+    """An object in whose space a shape counts."""
+
+    copy: bpy.types.Object  # what stands for it in the private scene
+    ob: bpy.types.Object
+
+
+@dataclass(frozen=True)
+class _Run:
+    """The evaluation of a copy of an object in a private scene."""
+
+    ob: bpy.types.Object
+    depsgraph: bpy.types.Depsgraph
+    adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None
+    puts_back: bool
+    scene: bpy.types.Scene
+
+    def evaluate(self, copy: bpy.types.Object, cut: int) -> bpy.types.Object:
+        copy.hide_viewport = False
+        for modifier in copy.modifiers[cut:]:
+            copy.modifiers.remove(modifier)
+        if self.adjust:
+            self.adjust(copy, self.scene)
+        self.scene.collection.objects.link(copy)
+        layer = self._layer()
+        layer.update()
+        if self.puts_back and not self._is_of_another_frame():
+            if _put_back(layer, self.depsgraph, copy, self.ob):
+                layer.update()
+        return copy.evaluated_get(layer.depsgraph)
+
+    def needs_simulation(
+        self, copy: bpy.types.Object, cut: int, settled: int | None, subject: Subject
+    ) -> bool:
+        """Tells whether rigid bodies were moved, so that the object has to be read as it is shown.
+        Raises CageError where that is not possible.
+        """
+        alone = self._layer().depsgraph
+        if self._is_of_another_frame():
+            moving = rigid_bodies.moving(alone, self.depsgraph, self.ob)
+            if moving and any(m.show_viewport for m in self.ob.modifiers[:cut]):
+                why = "its shape is needed in another frame: go to that frame"
+                raise rigid_bodies.refusal(self.ob, moving, f"{why} ({self.scene.frame_float:g})")
+            return False
+        moved = rigid_bodies.moved(alone, self.depsgraph, subject.copy, subject.ob)
+        if not moved:
+            return False
+        if not subject.ob.evaluated_get(self.depsgraph).is_evaluated:
+            why = "it is not in this view layer, or is disabled in viewports: enable it first"
+            raise rigid_bodies.refusal(subject.ob, moved, why)
+        if settled is not None and self.ob.type == "MESH":
+            return True
+        if rigid_bodies.move_alike(moved, alone, self.depsgraph, *subject):
+            return False
+        why = "its shape cannot be read while they move apart: go to the first frame"
+        raise rigid_bodies.refusal(subject.ob, moved, why)
+
+    def go_back(self, copy: bpy.types.Object) -> None:
+        """Evaluation has written animated values into the file: those of the private scene's
+        frame.
+        """
+        if not self._is_of_another_frame():
+            return
+        self.scene.frame_float = self.depsgraph.scene.frame_float
+        layer = self._layer()
+        layer.update()
+        if self.puts_back:
+            _put_back(layer, self.depsgraph, copy, self.ob)
+
+    def _is_of_another_frame(self) -> bool:
+        return bool(self.scene.frame_float != self.depsgraph.scene.frame_float)
+
+    def _layer(self) -> bpy.types.ViewLayer:
+        return private_scene.layer(self.scene, self.depsgraph.view_layer)
 
 
 def _put_back(
@@ -300,6 +377,24 @@ def check_modifiers(ob: bpy.types.Object, cut: int, shown: str = "show_viewport"
                 f"{ob.name}: the simulation {modifier.name} stands before the subdivision, which "
                 "is not supported: apply it, or bake it to a mesh cache"
             )
+
+
+def _check_parent(ob: bpy.types.Object) -> None:
+    """Raises CageError where the object's parent deforms it in a way that Blender does not keep up
+    to date: it evaluates the object without waiting for the shape of the lattice, so that renders,
+    the viewport and a file that is opened again show different shapes.
+    """
+    lattice = ob.parent if ob.parent_type == "LATTICE" else None
+    if lattice is None:
+        return
+    changes = ["shape keys"] if lattice.data.shape_keys else []
+    changes += [m.name for m in lattice.modifiers if m.show_viewport or m.show_render]
+    if changes:
+        raise CageError(
+            f"{ob.name} is deformed by its parent, the lattice {lattice.name}, and Blender does "
+            f"not keep up with what changes that lattice ({', '.join(changes)}): set Parent Type "
+            f"to Object, and add a Lattice modifier to {ob.name} instead"
+        )
 
 
 def _has_simulation(group: bpy.types.NodeTree | None) -> bool:

@@ -31,7 +31,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
     empty = bpy.data.objects.new(ids.TEMPORARY_MESH, mesh)
     try:
         with _thin(ob) as thin:
-            lines = _evaluated(thin, tree, empty, depsgraph)
+            lines = _evaluated(cage.Subject(thin, ob), tree, empty, depsgraph)
     finally:
         bpy.data.objects.remove(empty)
         bpy.data.meshes.remove(mesh)
@@ -75,17 +75,17 @@ def _thin(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
 
 
 def _evaluated(
-    ob: bpy.types.Object,
+    subject: cage.Subject,
     tree: bpy.types.NodeTree,
     empty: bpy.types.Object,
     depsgraph: bpy.types.Depsgraph,
 ) -> np.ndarray:
-    _fill(tree, ob)
+    _fill(tree, subject.copy)
 
     def add_nodes(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
         copy.modifiers.new(tree.name, "NODES").node_group = tree
 
-    with cage.evaluated_copy(empty, 0, depsgraph, add_nodes) as evaluated:
+    with cage.evaluated_copy(empty, 0, depsgraph, add_nodes, subject=subject) as evaluated:
         return _edges(evaluated.data)
 
 

@@ -99,7 +99,8 @@ def read_as_set_up(
         _carry_simplify(depsgraph.scene, scene, "VIEWPORT")
         setup.apply(copy)
 
-    with cage.evaluated_copy(ob, cut, depsgraph, adjust) as evaluated:
+    settled = rules.place_of_subsurf(ob)
+    with cage.evaluated_copy(ob, cut, depsgraph, adjust, settled=settled) as evaluated:
         modifier = evaluated.modifiers[-1]
         if not setup.holds(modifier):
             raise DisplayedError(
@@ -141,7 +142,8 @@ def opened(
         _carry_simplify(depsgraph.scene, scene, kind)
         _show(copy, subsurf.name if subsurf else "", kind)
 
-    with cage.evaluated_copy(ob, cut, depsgraph, adjust) as evaluated:
+    settled = rules.place_of_subsurf(ob)
+    with cage.evaluated_copy(ob, cut, depsgraph, adjust, settled=settled) as evaluated:
         whose = f"{ob.name}: {_called(kind)}"
         modifier = evaluated.modifiers[subsurf.name] if subsurf else None
         _check_settings(whose, evaluated, modifier, kind)
