@@ -15,7 +15,7 @@ from ..counting import by_count, counted
 from ..errors import CageError, NotNowError, RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE, TILES
-from ..reading import attributes, cage, transform
+from ..reading import attributes, cage, rigid_bodies, transform
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside, at_once
 from . import capture_place, followers, following, proxy, seals, tables
@@ -206,6 +206,10 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np
     """Returns what the modifier of following alone makes of the object."""
     modifier = followers.modifier_of(ob)
     assert modifier is not None
+    evaluated = ob.evaluated_get(depsgraph)
+    is_alone = [m for m in ob.modifiers if m.show_viewport] == [modifier]
+    if is_alone and evaluated.is_evaluated and rigid_bodies.are_simulated(depsgraph.scene):
+        return _moved_values(ob, evaluated)
 
     def leave_alone(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
         for other in list(copy.modifiers):
@@ -213,10 +217,14 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np
                 copy.modifiers.remove(other)
 
     with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph, leave_alone) as evaluated:
-        stored = ob.data.attributes
-        # Normals that are angles turn with the polygons.
-        names = [n for n in _MOVED if n in stored and stored[n].data_type in attributes.LAYOUTS]
-        return {name: attributes.read(evaluated.data, name) for name in names}
+        return _moved_values(ob, evaluated)
+
+
+def _moved_values(ob: bpy.types.Object, evaluated: bpy.types.Object) -> dict[str, np.ndarray]:
+    stored = ob.data.attributes
+    # Normals that are angles turn with the polygons.
+    names = [n for n in _MOVED if n in stored and stored[n].data_type in attributes.LAYOUTS]
+    return {name: attributes.read(evaluated.data, name) for name in names}
 
 
 def _remove_attributes(data: bpy.types.ID) -> None:

@@ -290,9 +290,9 @@ class _Run:
         self.scene.collection.objects.link(copy)
         layer = self._layer()
         layer.update()
-        if self.puts_back and not self._is_of_another_frame():
-            if _put_back(layer, self.depsgraph, copy, self.ob):
-                layer.update()
+        puts_back_now = self.puts_back and not self._is_of_another_frame()
+        if puts_back_now and _put_back(layer, self.depsgraph, copy, self.ob):
+            layer.update()
         return copy.evaluated_get(layer.depsgraph)
 
     def needs_simulation(
@@ -305,21 +305,23 @@ class _Run:
         if self._is_of_another_frame():
             moving = rigid_bodies.moving(alone, self.depsgraph, self.ob)
             if moving and any(m.show_viewport for m in self.ob.modifiers[:cut]):
-                why = "its shape is needed in another frame: go to that frame"
-                raise rigid_bodies.refusal(self.ob, moving, f"{why} ({self.scene.frame_float:g})")
+                frame = f"frame {self.scene.frame_float:g}"
+                why = f"its shape in {frame} is needed"
+                raise rigid_bodies.refusal(self.ob, moving, why, f"go to {frame}")
             return False
         moved = rigid_bodies.moved(alone, self.depsgraph, subject.copy, subject.ob)
         if not moved:
             return False
         if not subject.ob.evaluated_get(self.depsgraph).is_evaluated:
-            why = "it is not in this view layer, or is disabled in viewports: enable it first"
-            raise rigid_bodies.refusal(subject.ob, moved, why)
+            why = "it is disabled in viewports, or is not in this view layer"
+            raise rigid_bodies.refusal(subject.ob, moved, why, "enable it")
         if settled is not None and self.ob.type == "MESH":
             return True
         if rigid_bodies.move_alike(moved, alone, self.depsgraph, *subject):
             return False
-        why = "its shape cannot be read while they move apart: go to the first frame"
-        raise rigid_bodies.refusal(subject.ob, moved, why)
+        why = "they change its shape in a way that cannot be read"
+        remedy = "go to the first frame of the simulation"
+        raise rigid_bodies.refusal(subject.ob, moved, why, remedy)
 
     def go_back(self, copy: bpy.types.Object) -> None:
         """Evaluation has written animated values into the file: those of the private scene's

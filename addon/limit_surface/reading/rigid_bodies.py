@@ -75,11 +75,13 @@ def move_alike(
     return True
 
 
-def refusal(ob: bpy.types.Object, bodies: list[bpy.types.Object], why: str) -> CageError:
+def refusal(
+    ob: bpy.types.Object, bodies: list[bpy.types.Object], why: str, remedy: str
+) -> CageError:
     names = ", ".join(dict.fromkeys(body.name for body in bodies))
     return CageError(
-        f"{ob.name} depends on the rigid body simulation, which moves {names}, and {why}. Or turn "
-        "the simulation into keyframes first (Object > Rigid Body > Bake to Keyframes)"
+        f"{ob.name} depends on rigid bodies that a simulation moves ({names}), and {why}: "
+        f"{remedy}, or turn the simulation into keyframes (Object > Rigid Body > Bake to Keyframes)"
     )
 
 

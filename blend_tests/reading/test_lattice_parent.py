@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lattices that deform a surface as its parent: Blender does not keep up with what changes them."""
+
+import bpy
+import numpy as np
+import pytest
+import scenes
+from limit_surface import ids
+from limit_surface.errors import CageError
+from limit_surface.reading import attributes, cage
+
+MOVED = 0.05  # a lattice's changes move the sheet by more than this
+
+
+def sheet_in_lattice():
+    ob = scenes.grid_with_holes()
+    lattice = bpy.data.objects.new("Box", bpy.data.lattices.new("Box"))
+    bpy.context.collection.objects.link(lattice)
+    lattice.scale = (9, 9, 9)
+    ob.parent, ob.parent_type = lattice, "LATTICE"
+    return ob, lattice
+
+
+def add_key(lattice):
+    lattice.shape_key_add(name="Basis")
+    key = lattice.shape_key_add(name="Bent")
+    key.data[0].co.z += 0.5
+    key.value = 1
+
+
+def add_hook(lattice):
+    hook = lattice.modifiers.new("Hook", "HOOK")
+    hook.object = bpy.data.objects.new("Handle", None)
+    bpy.context.collection.objects.link(hook.object)
+    hook.vertex_indices_set([0])
+
+
+def check_as_shown(ob):
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    expected = attributes.read(ob.evaluated_get(depsgraph).data, ids.POSITION)
+    found = np.array(cage.read(ob, depsgraph).mesh.positions)
+    np.testing.assert_allclose(found, expected, atol=1e-5)
+    assert np.abs(found - attributes.read(ob.data, ids.POSITION)).max() > MOVED
+
+
+@pytest.mark.parametrize(
+    ("change", "what"), [(add_key, "shape keys"), (add_hook, "Hook")], ids=["key", "hook"]
+)
+def test_a_lattice_that_changes_is_refused(change, what):
+    ob, lattice = sheet_in_lattice()
+    change(lattice)
+    contents = scenes.file_contents()
+    with pytest.raises(CageError, match=rf"Holes is deformed by .* Box, .*\({what}\): set Parent"):
+        cage.read(ob, bpy.context.evaluated_depsgraph_get())
+    assert scenes.file_contents() == contents
+
+
+def test_what_the_message_advises():
+    ob, lattice = sheet_in_lattice()
+    add_key(lattice)
+    ob.parent_type = "OBJECT"
+    ob.modifiers.new("Lattice", "LATTICE").object = lattice
+    check_as_shown(ob)
+
+
+def test_a_lattice_with_moved_points_is_read():
+    ob, lattice = sheet_in_lattice()
+    lattice.data.points[0].co_deform.z += 0.5
+    check_as_shown(ob)
+
+
+def test_blender_does_not_keep_up():
+    """The reason for the error. When this fails, Blender has learnt to, and the error can go."""
+    ob, lattice = sheet_in_lattice()
+    add_key(lattice)
+    bpy.context.scene.frame_set(2)
+    shown = []
+    for _ in range(2):
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        shown.append(attributes.read(ob.evaluated_get(depsgraph).data, ids.POSITION))
+        ob.update_tag()
+    assert np.abs(shown[0] - shown[1]).max() > MOVED
