@@ -28,13 +28,15 @@ def shown_points(ob):
     return attributes.read(ob.evaluated_get(depsgraph).data, ids.POSITION).copy()
 
 
-@pytest.mark.parametrize("relation", ["itself", "hooked"])
+@pytest.mark.parametrize(
+    ("relation", "method"), [("itself", "CLOSEST"), ("child", "CLOSEST"), ("hooked", "FACE")]
+)
 @pytest.mark.parametrize("follow", ["NODES", "LIVE"])
-def test_binding_again_moves_nothing(relation, follow):
+def test_binding_again_moves_nothing(relation, method, follow):
     ob, hair = hair_on_moved_sheet(relation, follow=follow)
     shown, face = shown_points(hair), attributes.read(hair.data, ids.FACE)
     scenes.activate(ob)
-    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    assert bpy.ops.object.limit_rebind(method=method) == {"FINISHED"}
     np.testing.assert_array_equal(attributes.read(hair.data, ids.FACE), face)
     np.testing.assert_allclose(shown_points(hair), shown, atol=MOST)
 

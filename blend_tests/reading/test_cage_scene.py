@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.reading import attributes, cage
+from limit_surface.reading import attributes, cage, private_scene
 from scenes import add_subsurf
 
 EXTENSION = Path(limit_surface.__file__).parent
@@ -113,6 +113,22 @@ def test_properties_of_the_view_layer():
     found = cage.read(ob, second.depsgraph)
     shift = np.array(found.mesh.positions) - attributes.read(ob.data, ids.POSITION)
     np.testing.assert_allclose(shift[:, 2], 0.5, atol=1e-6)
+
+
+@pytest.mark.parametrize("can_copy", [True, False])
+def test_simplify(can_copy, monkeypatch):
+    """Other objects are subdivided as in the user's scene."""
+    monkeypatch.setattr(private_scene, "_CAN_COPY", can_copy and private_scene._CAN_COPY)
+    bpy.ops.mesh.primitive_cube_add(size=20)
+    target = bpy.context.active_object
+    add_subsurf(target).levels = 4
+    render = bpy.context.scene.render
+    render.use_simplify, render.simplify_subdivision = True, 0
+    ob = scenes.flat_grid(1)
+    shrinkwrap = ob.modifiers.new("Shrinkwrap", "SHRINKWRAP")
+    shrinkwrap.target, shrinkwrap.wrap_method = target, "PROJECT"
+    shrinkwrap.use_project_z = True
+    check_shift(ob, 10)
 
 
 def rich_scene():

@@ -71,9 +71,12 @@ def test_data_of_the_mesh_is_kept():
     assert set(found.mesh.edge_sharpness[1]) == {2.5}
 
 
-def test_reading_does_not_disturb_the_simulation():
-    ob = moved_sheet("child")
+@pytest.mark.parametrize("relation", ["itself", "child"])
+def test_reading_does_not_disturb_the_simulation(relation):
+    ob = moved_sheet(relation)
+    body = ob.parent or ob
     scene = bpy.context.scene
+    bodies = list(scene.rigidbody_world.collection.objects)
     expected = []
     for frame in (21, 22, 20):
         scene.frame_set(frame)
@@ -83,7 +86,8 @@ def test_reading_does_not_disturb_the_simulation():
         scene.frame_set(frame)
         cage.read(ob, depsgraph())
         np.testing.assert_array_equal(shown(ob).matrix_world, matrix)
-        np.testing.assert_array_equal(ob.parent.matrix_world, shown(ob.parent).matrix_world)
+        np.testing.assert_array_equal(body.matrix_world, shown(body).matrix_world)
+    assert list(scene.rigidbody_world.collection.objects) == bodies
     assert scenes.file_contents() == contents
     rigid_scenes.play(24)  # the part that was not simulated before
     assert shown(ob).matrix_world.translation.z < expected[1][2, 3] - 0.5
@@ -106,6 +110,19 @@ def test_disabled_surfaces_are_refused(relation):
     with pytest.raises(CageError, match=r"Holes depends on .*\(Falling\).*: enable it, or turn"):
         cage.read(ob, depsgraph())
     assert scenes.file_contents() == contents
+
+
+def test_disabled_bodies_are_read():
+    """Blender simulates them nevertheless."""
+    ob = scenes.grid_with_holes()
+    rigid_scenes.itself(ob)
+    ob.hide_viewport = True
+    rigid_scenes.play()
+    found = cage.read(ob, depsgraph())
+    ob.hide_viewport = False
+    bpy.context.view_layer.update()
+    np.testing.assert_array_equal(found.matrix, shown(ob).matrix_world)
+    assert found.matrix[2, 3] < rigid_scenes.HEIGHT - 2
 
 
 def test_other_frames_are_refused():

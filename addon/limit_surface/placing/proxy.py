@@ -10,7 +10,7 @@ import bpy
 
 from .. import ids
 from ..nodes import groups
-from ..reading import overrides
+from ..reading import copied_object, overrides
 
 USE, OBJECT = "Use Proxy", "Proxy"
 
@@ -35,9 +35,7 @@ def update(surface: bpy.types.Object | None, table: bpy.types.Object, wanted: bo
 
 
 def _copy(surface: bpy.types.Object) -> bpy.types.Object:
-    proxy = overrides.make_own(surface.copy())
-    for collection in proxy.users_collection:  # the copy of a rigid body is one, too
-        collection.objects.unlink(proxy)
+    proxy = overrides.make_own(copied_object.of(surface))
     capture = next(groups.modifiers(proxy, ids.CAPTURE_GROUP))
     for modifier in proxy.modifiers[proxy.modifiers.find(capture.name) + 1 :]:
         proxy.modifiers.remove(modifier)

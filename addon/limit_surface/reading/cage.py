@@ -22,6 +22,7 @@ from ..errors import CageError, MultiresolutionError, NotNowError
 from . import (
     animated_values,
     attributes,
+    copied_object,
     private_scene,
     rigid_bodies,
     rules,
@@ -353,7 +354,7 @@ def _put_back(
 
 @contextmanager
 def _copied(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
-    copy = ob.copy()
+    copy = copied_object.of(ob)
     try:
         yield copy
     finally:

@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from . import attributes, cage, transform
+from . import attributes, cage, copied_object, transform
 
 TYPES = {"CURVE", "CURVES"}
 
@@ -63,7 +63,7 @@ def _thin(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     if ob.type != "CURVE":
         yield ob
         return
-    thin, data = ob.copy(), ob.data.copy()
+    thin, data = copied_object.of(ob), ob.data.copy()
     try:
         thin.data = data
         data.bevel_mode, data.bevel_depth, data.bevel_object, data.extrude = "ROUND", 0, None, 0

@@ -18,7 +18,10 @@ _CAN_COPY = bpy.app.version >= (4, 5)
 
 _CARRIED = {
     "": ("frame_start", "frame_end", "camera", "gravity", "use_gravity"),
-    "render": ("fps", "fps_base", "frame_map_old", "frame_map_new"),
+    "render": (
+        *("fps", "fps_base", "frame_map_old", "frame_map_new"),
+        *("use_simplify", "simplify_subdivision"),
+    ),
     "unit_settings": ("system", "scale_length", "length_unit", "system_rotation"),
 }
 

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 import bpy
 
 from .. import ids
+from . import copied_object
 
 _MODES = ("show_viewport", "show_render")
 
@@ -30,7 +31,7 @@ def standing(
     """
     evaluated = ob.evaluated_get(depsgraph)
     mesh = _mesh_after(evaluated, depsgraph, runs)
-    copy, stand = ob.copy(), bpy.data.objects.new(ids.TEMPORARY_MESH, None)
+    copy, stand = copied_object.of(ob), bpy.data.objects.new(ids.TEMPORARY_MESH, None)
     try:
         copy.animation_data_clear()
         copy.constraints.clear()
