@@ -18,6 +18,8 @@ def moved_with_time():
         group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
     nodes, link = group.nodes, group.links.new
     move, bake = nodes.new("GeometryNodeSetPosition"), nodes.new("GeometryNodeBake")
+    if "Geometry" not in bake.inputs:  # as in Blender 5.2
+        bake.bake_items.new("GEOMETRY", "Geometry")
     along_z = nodes.new("ShaderNodeCombineXYZ")
     link(nodes.new("GeometryNodeInputSceneTime").outputs["Frame"], along_z.inputs["Z"])
     link(along_z.outputs[0], move.inputs["Offset"])
