@@ -31,6 +31,7 @@ def moved(
     return [
         body
         for body in _bodies(shown.scene)
+        if body == ob or body.evaluated_get(alone).is_evaluated  # most are not
         for here in _evaluated(body, alone, copy, ob)
         if here.matrix_world != body.evaluated_get(shown).matrix_world
     ]
@@ -46,9 +47,10 @@ def moving(
         body
         for body in _bodies(shown.scene)
         if body != ob
-        and body.rigid_body.type == "ACTIVE"
-        and not body.rigid_body.kinematic
         and body.evaluated_get(alone).is_evaluated
+        and (settings := body.rigid_body)
+        and settings.type == "ACTIVE"
+        and not settings.kinematic
     ]
 
 
@@ -88,7 +90,7 @@ def refusal(
 def _bodies(scene: bpy.types.Scene) -> Iterator[bpy.types.Object]:
     world = scene.rigidbody_world
     if world and world.enabled and world.collection:
-        yield from (ob for ob in world.collection.all_objects if ob.rigid_body)
+        yield from world.collection.all_objects
 
 
 def _evaluated(
