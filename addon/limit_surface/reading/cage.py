@@ -238,8 +238,8 @@ def evaluated_copy(
 
     The first `settled` modifiers are those that `adjust` neither removes nor moves. Where their
     number is given, a mesh that depends on rigid bodies is read as it is shown, with its matrix.
-    Otherwise only its shape is right, and CageError is raised where bodies change it, as seen from
-    the `subject`: by default the object itself.
+    Otherwise only its shape is right, and NotNowError is raised where bodies change it, as seen
+    from the `subject`: by default the object itself.
     """
     global _busy
     was_busy, _busy = _busy, True
@@ -300,7 +300,7 @@ class _Run:
         self, copy: bpy.types.Object, cut: int, settled: int | None, subject: Subject
     ) -> bool:
         """Tells whether rigid bodies were moved, so that the object has to be read as it is shown.
-        Raises CageError where that is not possible.
+        Raises NotNowError where that is not possible.
         """
         alone = self._layer().depsgraph
         if self._is_of_another_frame():
@@ -383,9 +383,9 @@ def check_modifiers(ob: bpy.types.Object, cut: int, shown: str = "show_viewport"
 
 
 def _check_parent(ob: bpy.types.Object) -> None:
-    """Raises CageError where the object's parent deforms it in a way that Blender does not keep up
-    to date: it evaluates the object without waiting for the shape of the lattice, so that renders,
-    the viewport and a file that is opened again show different shapes.
+    """Raises NotNowError where the object's parent deforms it in a way that Blender does not keep
+    up to date: it evaluates the object without waiting for the shape of the lattice, so that
+    renders, the viewport and a file that is opened again show different shapes.
     """
     lattice = ob.parent if ob.parent_type == "LATTICE" else None
     if lattice is None:
@@ -393,7 +393,7 @@ def _check_parent(ob: bpy.types.Object) -> None:
     changes = ["shape keys"] if lattice.data.shape_keys else []
     changes += [m.name for m in lattice.modifiers if m.show_viewport or m.show_render]
     if changes:
-        raise CageError(
+        raise NotNowError(
             f"{ob.name} is deformed by its parent, the lattice {lattice.name}, and Blender does "
             f"not keep up with what changes that lattice ({', '.join(changes)}): set Parent Type "
             f"to Object, and add a Lattice modifier to {ob.name} instead"

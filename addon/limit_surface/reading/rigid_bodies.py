@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import bpy
 import numpy as np
 
-from ..errors import CageError
+from ..errors import NotNowError
 
 _NEAR = 1e-5  # by how much two matrices may differ, as a share of their largest value
 
@@ -79,9 +79,9 @@ def move_alike(
 
 def refusal(
     ob: bpy.types.Object, bodies: list[bpy.types.Object], why: str, remedy: str
-) -> CageError:
+) -> NotNowError:
     names = ", ".join(dict.fromkeys(body.name for body in bodies))
-    return CageError(
+    return NotNowError(
         f"{ob.name} depends on rigid bodies that a simulation moves ({names}), and {why}: "
         f"{remedy}, or turn the simulation into keyframes (Object > Rigid Body > Bake to Keyframes)"
     )
