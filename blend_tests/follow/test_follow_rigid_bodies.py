@@ -51,6 +51,17 @@ def test_unbinding_moves_nothing(relation, follow):
     np.testing.assert_allclose(shown_points(hair), shown, atol=MOST)
 
 
+def test_unbinding_from_a_disabled_surface_moves_nothing():
+    """What follows the surface has it evaluated."""
+    ob, hair = hair_on_moved_sheet("child", follow="NODES")
+    ob.hide_viewport = True
+    shown, face = shown_points(hair), attributes.read(hair.data, ids.FACE)
+    scenes.activate(hair)
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    np.testing.assert_allclose(shown_points(hair), shown, atol=MOST)
+    np.testing.assert_array_equal(attributes.read(hair.data, ids.FACE), face)
+
+
 def test_hair_from_elsewhere_stays_where_it_is():
     ob = scenes.grid_with_holes()
     rigid_scenes.itself(ob)

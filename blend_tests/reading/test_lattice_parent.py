@@ -55,6 +55,23 @@ def test_a_lattice_that_changes_is_refused(change, what):
     assert scenes.file_contents() == contents
 
 
+def test_unbinding_is_refused_and_places_are_kept():
+    ob, lattice = sheet_in_lattice()
+    lattice.data.points[0].co_deform.z += 0.5
+    scenes.add_subsurf(ob)
+    hair = scenes.add_hair(ob, per_side=1, follow="NODES")
+    face = attributes.read(hair.data, ids.FACE)
+    bpy.context.scene.frame_set(2)
+    add_key(lattice)
+    ob.data.vertices[0].co.z += 1  # so that the hair moves
+    ob.data.update()
+    scenes.activate(hair)
+    with pytest.raises(RuntimeError, match="Holes is deformed by its parent"):
+        bpy.ops.object.limit_unbind()
+    np.testing.assert_array_equal(attributes.read(hair.data, ids.FACE), face)
+    assert len(hair.modifiers) == 1
+
+
 def test_what_the_message_advises():
     ob, lattice = sheet_in_lattice()
     add_key(lattice)
