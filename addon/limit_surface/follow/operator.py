@@ -48,9 +48,9 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
                 "LIVE",
                 "Live",
                 "This extension moves things in each frame. It is faster for very many "
-                "strands. Creases may be animated. Modifiers before the subdivision may add and "
-                "remove faces. They must keep the faces on which things stand, and the numbers of "
-                "these faces",
+                "strands, but slower in scenes with very many objects. Creases may be animated. "
+                "Modifiers before the subdivision may add and remove faces. They must keep the "
+                "faces on which things stand, and the numbers of these faces",
                 1,
             ),
         ),

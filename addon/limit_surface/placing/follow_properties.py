@@ -31,8 +31,8 @@ _NONE = ("NONE", "None", "Do not follow: stay in place when the mesh deforms", 2
 _LIVE = (
     "LIVE",
     "Live",
-    "Let this extension move the object in each frame. This is faster for very many strands, and "
-    "creases may be animated",
+    "Let this extension move the object in each frame. This is faster for very many strands, but "
+    "slower in scenes with very many objects. Creases may be animated",
     3,
 )
 _DESCRIPTION = "How the new object follows the surface when its mesh deforms"
