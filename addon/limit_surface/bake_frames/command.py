@@ -11,6 +11,7 @@ from typing import Any
 import bpy
 
 from .. import ids, native
+from ..placing import proxy
 from . import arguments, bindings
 from .bake import Bake, say
 
@@ -41,6 +42,11 @@ def _run(argv: Sequence[str]) -> int:
         bake = Bake(wanted)
     except native.refusals as error:
         return _refuse(error, BAD_ARGUMENTS)
+    with proxy.aside():
+        return _write(bake)
+
+
+def _write(bake: Bake) -> int:
     try:
         with bake.at_first_frame():
             bindings.check(bake.objects)

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import bpy
 
-from .. import native
-from ..placing import following, live_kept, seals
+from .. import ids, native
+from ..placing import following, live_kept, proxy, render_faces, seals, tables
 from ..placing.follow_state import State, Trouble, surfaces
 from ..placing.followers import live_modifier_of
 from ..reading import cage
@@ -21,6 +21,7 @@ from ..tasks.object_keys import ObjectKey
 PAUSE = 0.2
 
 _signatures: dict[ObjectKey, str] = {}  # those that are known, of surfaces as they are now
+_others: dict[ObjectKey, list[Trouble]] = {}  # what else an evaluation has found
 _asked: set[ObjectKey] = set()
 
 
@@ -32,16 +33,30 @@ def troubles(context: bpy.types.Context, state: State) -> list[Trouble]:
         _asked.add(key)
         if not bpy.app.timers.is_registered(_look):
             bpy.app.timers.register(_look, first_interval=PAUSE)
-    return state.troubles(_signatures.get(key))
+    return _known(state)
+
+
+def _known(state: State) -> list[Trouble]:
+    key = ObjectKey.of(state.surface)
+    found = state.troubles(_signatures.get(key))
+    # The operators that put these right make a proxy anew as well.
+    named = {trouble.remedy for trouble in found if trouble.remedy}
+    if ids.REBIND in named:
+        named.add(ids.FOLLOW)
+    others = [trouble for trouble in _others.get(key, ()) if trouble.remedy not in named]
+    return [*found, *others]
 
 
 def _look() -> None:
     """Is called by a timer."""
     for key in list(_asked):
         _asked.discard(key)
+        _others.pop(key, None)
         try:
-            found = cage.read(key.find(), bpy.context.evaluated_depsgraph_get())
+            surface, depsgraph = key.find(), bpy.context.evaluated_depsgraph_get()
+            found = cage.read(surface, depsgraph)
             _signatures[key] = following.signature(found)
+            _others[key] = _other_troubles(surface, found, depsgraph)
         except native.refusals:
             _signatures[key] = ""  # it is not known, and the panel shows what else is wrong
     for window in bpy.context.window_manager.windows:
@@ -50,17 +65,32 @@ def _look() -> None:
                 area.tag_redraw()
 
 
+def _other_troubles(
+    surface: bpy.types.Object, found: cage.Cage, depsgraph: bpy.types.Depsgraph
+) -> list[Trouble]:
+    state, table = State.of(surface), tables.of_surface(surface)
+    troubles = []
+    if table is not None:
+        text = proxy.trouble_in(found, surface, table, depsgraph)
+        troubles.append(Trouble(text, ids.FOLLOW))
+    if state is not None:
+        troubles.append(Trouble(render_faces.why_different(surface, depsgraph), ""))
+    return [trouble for trouble in troubles if trouble.text]
+
+
 @bpy.app.handlers.persistent
 def _notice(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     if _signatures and not cage.is_busy():
         for name in {update.id.name for update in depsgraph.updates if update.is_updated_geometry}:
             for key in [key for key in _signatures if key.name == name]:
                 del _signatures[key]
+                _others.pop(key, None)
 
 
 @bpy.app.handlers.persistent
 def _forget(*_arguments: object) -> None:
     _signatures.clear()
+    _others.clear()
     _asked.clear()
     seals.forget()
 
@@ -84,7 +114,7 @@ def _report() -> None:
     for surface in here:
         state = State.of(surface)
         if state:
-            for trouble in state.troubles(_signatures.get(ObjectKey.of(surface))):
+            for trouble in _known(state):
                 print(f"Limit Surface: {trouble.text}")
     for ob in bpy.context.scene.objects:
         if live_modifier_of(ob):

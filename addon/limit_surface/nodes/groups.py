@@ -140,6 +140,26 @@ def inputs_of(modifier: bpy.types.NodesModifier) -> Iterator[Any]:
             yield _value(modifier, item.identifier)
 
 
+def paths_of_inputs(modifier: bpy.types.NodesModifier) -> Iterator[tuple[str, Any]]:
+    """Yields the paths and the values of a modifier's inputs, whatever its group. Each may have an
+    attribute instead of a value.
+    """
+    of_modifier, inputs = modifier.path_from_id(), _inputs(modifier)
+    for item in modifier.node_group.interface.items_tree if modifier.node_group else ():
+        key = getattr(item, "identifier", "")
+        if item.item_type != "SOCKET" or item.in_out != "INPUT":
+            continue
+        if inputs is None:
+            for name in (key, f"{key}_use_attribute", f"{key}_attribute_name"):
+                if name in modifier:
+                    yield f'{of_modifier}["{name}"]', modifier[name]
+        elif hasattr(inputs, key):
+            for name in ("value", "type", "attribute_name"):
+                held = getattr(inputs, key)
+                if hasattr(held, name):
+                    yield f"{of_modifier}.properties.inputs.{key}.{name}", getattr(held, name)
+
+
 def values_in(group: bpy.types.NodeTree | None) -> Iterator[Any]:
     """Yields the values of sockets within a group, and in groups within it."""
     waiting, seen = [group], set()

@@ -17,7 +17,7 @@ from ..reading import attributes, cage
 from ..tasks.job import Progress
 from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import check_some_left
-from . import following, new_objects, tables
+from . import following, new_objects, render_faces, tables
 
 _NO_TILE = -(1 << 23)  # what quadtrees hold for faces that have no limit surface
 
@@ -37,6 +37,7 @@ class AllTiles:
     ) -> None:
         """Takes the levels of the mesh of faces, or None to make no such mesh."""
         following.check_surface(surface, depsgraph.scene)
+        render_faces.check(surface, depsgraph)
         self._surface, self._depth, self._levels = ObjectKey.of(surface), depth, levels
         with cage.opened(surface, depsgraph) as (found, mesh):
             self._bound = following.bound_to(found, mesh)

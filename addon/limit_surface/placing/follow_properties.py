@@ -7,6 +7,7 @@ from bpy.props import EnumProperty
 from .. import ids
 from ..nodes import groups
 from ..reading import rules
+from . import render_faces
 
 # Objects whose children they deform without a modifier
 _DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}
@@ -83,7 +84,9 @@ def why_not_automatic(surface: bpy.types.Object) -> str:
     """Returns why things do not follow by themselves although the surface can deform, or None."""
     if not surface.is_editable:
         return f"{surface.name} is linked from another file"
-    return rules.why_ambiguous(surface)
+    return rules.why_ambiguous(surface) or render_faces.why_different(
+        surface, bpy.context.evaluated_depsgraph_get()
+    )
 
 
 def can_deform(surface: bpy.types.Object) -> bool:

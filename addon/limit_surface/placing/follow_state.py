@@ -14,7 +14,7 @@ from .. import ids
 from ..counting import by_count, counted
 from ..nodes import groups
 from ..nodes.follow import TILES
-from . import all_tiles, capture_place, following, live_children, mending, seals, tables
+from . import all_tiles, capture_place, following, live_children, mending, proxy, seals, tables
 from .followers import (
     astray_from,
     followers_of,
@@ -99,7 +99,7 @@ class State:
         changed = list(self._changed_faces(signature)) if signature else []
         rules = self._changed_rules(signature) if signature and not changed else ()
         samples = self.stale_samples(signature) if signature else ()
-        broken = [*self._broken(), *self._misled(signature)]
+        broken = [*self._broken(), *self._misled(signature), *self._left_behind()]
         others = [*broken, *rules, *samples, *self._added()]
         if changed:  # Follow refuses then, and Rebind also does what Follow would have done
             others = [replace(t, remedy=_after_changes(t.remedy)) for t in others]
@@ -143,6 +143,12 @@ class State:
             holder = holder_of(ob) if ob.type != "CURVE" else None
             is_other = signature and holder and not following.holds(holder, signature)
             yield Trouble(why_astray(ob), ids.REBIND if is_other else ids.FOLLOW)
+
+    def _left_behind(self) -> Iterator[Trouble]:
+        for table in _tables_of(self.followers):
+            if tables.surface_of(table) == self.surface and tables.is_own(table):
+                if text := proxy.trouble(self.surface, table):
+                    yield Trouble(text, ids.FOLLOW)
 
     def _added(self) -> Iterator[Trouble]:
         for ob in self.followers:

@@ -23,7 +23,7 @@ from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, overrides, rules
 from ..tasks.object_keys import ObjectKey
-from . import capture_place, live_attributes, proxy, shared_tables, tables
+from . import capture_place, live_attributes, proxy, render_faces, shared_tables, tables
 from .follow_properties import follows
 from .followers import (
     ensure_modifier,
@@ -102,6 +102,7 @@ class Request:
         without: Sequence[bpy.types.Object] = (),
     ) -> None:
         check_surface(surface, depsgraph.scene)
+        render_faces.check(surface, depsgraph)
         for ob in things:
             check_thing(ob, surface)
             if modifier_of(ob) is None:

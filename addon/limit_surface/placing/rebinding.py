@@ -18,7 +18,7 @@ from ..reading import attributes, cage
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
-from . import curve_points, following, live_binding, seals
+from . import curve_points, following, live_binding, render_faces, seals
 from .applied_shapes import rows_as_posed
 from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
 from .followers import bound_to, holder_of, is_astray, is_own, is_stray, live_modifier_of
@@ -116,6 +116,8 @@ class Rebinding:
         for ob in kept:
             following.check_thing(ob, surface)
         self._live = [ob for ob in kept if live_modifier_of(ob)]
+        if self._curves or len(self._live) < len(kept):
+            render_faces.check(surface, depsgraph)
         live_binding.prepare_rebinding(self._live, depsgraph)
         for ob in kept:
             following.settle(ob)
@@ -149,15 +151,15 @@ class Rebinding:
             self._relocations.append(relocation)
         self._relocations_of_live = [r for r in self._relocations if r.elements.ob in self._live]
         others = [r for r in self._relocations if r not in self._relocations_of_live]
-        request = following.Request(
-            self._target,
-            context.evaluated_depsgraph_get(),
-            self._by_nodes,
-            relocated=others,
-            without=self._curves,
-        )
         self._bindings = None
         if self._by_nodes:
+            request = following.Request(
+                self._target,
+                context.evaluated_depsgraph_get(),
+                self._by_nodes,
+                relocated=others,
+                without=self._curves,
+            )
             self._bindings = yield from aside(lambda _progress: request.compute())
 
     def write(self, context: bpy.types.Context) -> Rebound:

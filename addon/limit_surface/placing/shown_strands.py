@@ -13,6 +13,7 @@ from .. import ids
 from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..reading import attributes, cage, transform
+from . import proxy
 from .followers import live_modifier_of
 from .posed_surface import transformed
 
@@ -37,10 +38,11 @@ def read(
 @contextmanager
 def shown_as(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Object]:
     """Yields the evaluated object. Blender does not evaluate hair that is disabled in viewports or
-    not in the view layer, so a copy of it is evaluated. Raises RefusalError where that is no use.
+    not in the view layer, and hair that reads a proxy may be shown elsewhere, so a copy of it is
+    evaluated. Raises RefusalError where that is no use.
     """
     shown = ob.evaluated_get(depsgraph)
-    if shown.is_evaluated:
+    if shown.is_evaluated and not proxy.is_read_by(ob):
         yield shown
         return
     if live_modifier_of(ob):
@@ -48,7 +50,7 @@ def shown_as(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[b
             f"{ob.name} follows live, but is disabled in viewports or is not in this view layer, "
             "so it does not move: enable it first"
         )
-    with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph) as copy:
+    with proxy.aside(), cage.evaluated_copy(ob, len(ob.modifiers), depsgraph) as copy:
         yield copy
 
 

@@ -216,7 +216,10 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np
             if other.name != modifier.name:
                 copy.modifiers.remove(other)
 
-    with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph, leave_alone) as evaluated:
+    with (
+        proxy.aside(),
+        cage.evaluated_copy(ob, len(ob.modifiers), depsgraph, leave_alone) as evaluated,
+    ):
         return _moved_values(ob, evaluated)
 
 
