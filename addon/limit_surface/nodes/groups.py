@@ -141,10 +141,10 @@ def inputs_of(modifier: bpy.types.NodesModifier) -> Iterator[Any]:
 
 
 def paths_of_inputs(modifier: bpy.types.NodesModifier) -> Iterator[tuple[str, Any]]:
-    """Yields the paths and the values of a modifier's inputs, whatever its group. Each may have an
-    attribute instead of a value.
+    """Yields the paths, as seen from the modifier, and the values of its inputs, whatever its
+    group. An input may have an attribute instead of a value.
     """
-    of_modifier, inputs = modifier.path_from_id(), _inputs(modifier)
+    inputs = _inputs(modifier)
     for item in modifier.node_group.interface.items_tree if modifier.node_group else ():
         key = getattr(item, "identifier", "")
         if item.item_type != "SOCKET" or item.in_out != "INPUT":
@@ -152,12 +152,12 @@ def paths_of_inputs(modifier: bpy.types.NodesModifier) -> Iterator[tuple[str, An
         if inputs is None:
             for name in (key, f"{key}_use_attribute", f"{key}_attribute_name"):
                 if name in modifier:
-                    yield f'{of_modifier}["{name}"]', modifier[name]
+                    yield f'["{name}"]', modifier[name]
         elif hasattr(inputs, key):
             for name in ("value", "type", "attribute_name"):
                 held = getattr(inputs, key)
                 if hasattr(held, name):
-                    yield f"{of_modifier}.properties.inputs.{key}.{name}", getattr(held, name)
+                    yield f".properties.inputs.{key}.{name}", getattr(held, name)
 
 
 def values_in(group: bpy.types.NodeTree | None) -> Iterator[Any]:

@@ -146,9 +146,9 @@ class State:
 
     def _left_behind(self) -> Iterator[Trouble]:
         for table in _tables_of(self.followers):
-            if tables.surface_of(table) == self.surface and tables.is_own(table):
-                if text := proxy.trouble(self.surface, table):
-                    yield Trouble(text, ids.FOLLOW)
+            is_its = tables.surface_of(table) == self.surface and tables.is_own(table)
+            if is_its and (text := proxy.trouble(self.surface, table)):
+                yield Trouble(text, ids.FOLLOW)
 
     def _added(self) -> Iterator[Trouble]:
         for ob in self.followers:

@@ -61,13 +61,15 @@ def why_not(copy: bpy.types.Object, original: bpy.types.Object) -> str:
         return f"does not show the same shape key alone as {original.name}"
     ours = list(copy.modifiers)
     theirs = list(original.modifiers)[: len(ours)]
-    if [(m.name, m.type) for m in ours] != [(m.name, m.type) for m in theirs]:
+    if [m.type for m in ours] != [m.type for m in theirs]:
         return f"has other modifiers than {original.name}"
     animation = copy.animation_data
     driven = {curve.data_path for curve in animation.drivers} if animation else set()
     for one, other in zip(ours, theirs, strict=True):
-        if _compared(one, driven) != _compared(other, driven):
-            return f"has other settings of the modifier {one.name} than {original.name}"
+        of_modifier = one.path_from_id()
+        by_drivers = {p.removeprefix(of_modifier) for p in driven if p.startswith(of_modifier)}
+        if _compared(one, by_drivers) != _compared(other, by_drivers):
+            return f"has other settings of the modifier {other.name} than {original.name}"
     return ""
 
 
@@ -85,15 +87,16 @@ def _paths(ob: bpy.types.Object) -> Iterator[str]:
     """Yields the paths of all values that a driver may carry over."""
     for modifier in ob.modifiers:
         for path, _value in _values(modifier):
-            yield path
+            yield f"{modifier.path_from_id()}{path}"
 
 
 def _values(modifier: bpy.types.Modifier) -> Iterator[tuple[str, Any]]:
-    """Yields the paths and the values of all settings of a modifier that may change a shape."""
+    """Yields the paths, as seen from the modifier, and the values of all of its settings that may
+    change a shape.
+    """
     for prop in modifier.bl_rna.properties:
         if prop.identifier not in _WITHOUT_EFFECT and prop.type != "COLLECTION":
-            path = f"{modifier.path_from_id()}.{prop.identifier}"
-            yield path, getattr(modifier, prop.identifier)
+            yield f".{prop.identifier}", getattr(modifier, prop.identifier)
     if modifier.type == "NODES":
         yield from groups.paths_of_inputs(modifier)
 
@@ -105,7 +108,7 @@ def _drive(copy: bpy.types.Object, original: bpy.types.Object, path: str) -> Non
     value = copy.path_resolve(path)
     if isinstance(value, bool | int | float | str):
         indices: tuple[int, ...] = (-1,)
-    elif _is_array(value):
+    elif _is_array(value) and all(isinstance(each, bool | int | float) for each in value):
         indices = tuple(range(len(value)))
     else:
         return
@@ -125,7 +128,9 @@ def _is_array(value: Any) -> bool:
 
 def _compared(modifier: bpy.types.Modifier, driven: set[str]) -> dict[str, Any]:
     """Returns the values that no driver carries over, as values that can be compared."""
-    return {path: _frozen(value) for path, value in _values(modifier) if path not in driven}
+    compared = ((path, value) for path, value in _values(modifier) if path not in driven)
+    # where an object names itself, its copy names the copy
+    return {path: None if value == modifier.id_data else _frozen(value) for path, value in compared}
 
 
 def _frozen(value: Any) -> Any:

@@ -103,8 +103,8 @@ def trouble_in(
 
 def _called(proxy: bpy.types.Object, surface: bpy.types.Object) -> str:
     return (
-        f"What follows {surface.name} by nodes may be at wrong places in the viewport: {proxy.name}, "
-        "which Fast Viewport reads,"
+        f"What follows {surface.name} by nodes may be at wrong places in the viewport, because its "
+        f"hidden copy {proxy.name}, which Fast Viewport reads,"
     )
 
 

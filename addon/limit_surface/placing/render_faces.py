@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 
 def why_different(surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str:
-    """Returns a sentence where renders show other faces or creases than the viewport, or nothing."""
+    """Returns a sentence where renders show other faces than the viewport, or nothing. Creases
+    count as well.
+    """
     names = [modifier.name for modifier in _only_in_one(surface)]
     if not names or _are_same(surface, depsgraph):
         return ""
