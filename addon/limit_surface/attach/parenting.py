@@ -15,6 +15,7 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import ids
+from ..placing import proxy
 from ..reading import private_scene, rigid_bodies
 
 # The time that Blender takes to remove objects grows with the square of their number.
@@ -27,7 +28,7 @@ def parent_matrices(
     """Returns the matrices (4, 4) of parents, given with three of their vertices."""
     probes: list[bpy.types.Object] = []
     matrices: list[np.ndarray] = []
-    with _scene_for(context, len(parents)) as (scene, layer):
+    with proxy.aside(), _scene_for(context, len(parents)) as (scene, layer):
         try:
             for _ in parents[:MOST_PROBES]:
                 probe = bpy.data.objects.new(ids.CARRIED_BY, None)

@@ -61,7 +61,7 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         description="Make playback faster: in the viewport nodes read a hidden copy of the "
         "surface, so that the graphics card can subdivide the surface itself. "
         "Use it if the last modifier is a Subdivision Surface modifier of level 3 or "
-        "more. Run this operator again after you change the surface's modifiers",
+        "more. Run this operator again after you add, remove or move modifiers of the surface",
         default=False,
     )
 

@@ -349,11 +349,12 @@ class ScatterOperator(
             self.summary += f"\n{ground.scattered.note}"
         if how:
             notes.append(f"they follow the surface {how}")
-        elif self._why_not_following:
-            notes.append(f"they do not follow the surface: {self._why_not_following}")
         if found.without_uv_map:
             notes.append(f"UVs were not stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))
+        if self._why_not_following and not how:
+            text = f"{what} do not follow the surface: {self._why_not_following}"
+            self.report({"WARNING"}, text)
         if made.hidden_by is not None:
             # the last report is the one that the status bar shows
             self.report({"WARNING"}, subsurf_offer.warning(self.surface, made.hidden_by, self.noun))

@@ -208,7 +208,8 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np
     assert modifier is not None
     evaluated = ob.evaluated_get(depsgraph)
     is_alone = [m for m in ob.modifiers if m.show_viewport] == [modifier]
-    if is_alone and evaluated.is_evaluated and rigid_bodies.are_simulated(depsgraph.scene):
+    is_seen = is_alone and evaluated.is_evaluated and not proxy.is_read_by(ob)
+    if is_seen and rigid_bodies.are_simulated(depsgraph.scene):
         return _moved_values(ob, evaluated)
 
     def leave_alone(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
