@@ -210,14 +210,21 @@ def test_bakes_read_the_surface_itself(tmp_path):
 
 
 def test_children_read_the_surface_itself():
-    ob, hair = stale()
+    def add_slope(ob: bpy.types.Object) -> None:
+        ob.shape_key_add(name="Basis")
+        for point in ob.shape_key_add(name="Slope").data:
+            point.co.z += point.co.x
+
+    ob, hair = fast(add_slope)
+    pin(ob)
     scenes.activate(hair)
     assert bpy.ops.object.limit_children_add(
         distribution="JITTERED", per_side=1, follow="NONE"
     ) == {"FINISHED"}
-    children = bpy.context.active_object
-    height = scenes.strands(children)[:, :, 2]
-    assert height.min() > 0.4
+    strands = scenes.strands(bpy.context.active_object)
+    along = strands[:, -1] - strands[:, 0]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    np.testing.assert_allclose(along, np.tile((-(0.5**0.5), 0, 0.5**0.5), (16, 1)), atol=1e-4)
 
 
 def test_a_full_copy_does_not_use_the_copy_of_the_original():

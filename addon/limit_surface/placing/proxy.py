@@ -113,7 +113,8 @@ def aside() -> Iterator[None]:
     """Has all nodes read the surfaces themselves, also in the viewport, as long as the context
     lasts.
     """
-    used = [ob for ob in bpy.data.objects if ob.type == "MESH" and is_used(ob)]
+    kinds = [group for group in bpy.data.node_groups if groups.is_of(group, ids.TILES_GROUP)]
+    used = [ob for ob in objects_using(*kinds) if is_used(ob)]
     for table in used:
         groups.set_input(_modifier(table), USE, False)
     try:
