@@ -356,8 +356,8 @@ ON_UV_MAP = {
 
 def refuses(case: str, change: str) -> bool:
     """Tells whether the result is of no use after the change."""
-    if case == "unbind":  # things keep the shape that they had, and need no surface
-        return False
+    if case == "unbind":  # things keep their shape without a surface, but would lose their places
+        return change == "Edit Mode"
     if change in ("UV", "UV map"):
         return case in ON_UV_MAP
     return change in ("faces", "Edit Mode", "removed") or (change == "moved" and case in IN_WORLD)
