@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Numbers of things in reports."""
 
-_IRREGULAR = {"children": "child", "vertices": "vertex"}
+_IRREGULAR = {
+    "children": "child",
+    "strands and points": "strand or point",
+    "vertices": "vertex",
+}
 
 
 def counted(count: int, things: str, verb_of_one: str = "", verb_of_many: str = "") -> str:

@@ -2,33 +2,23 @@
 """Geometry that a Bake node has stored counts, not what it would compute now."""
 
 import bpy
+import node_scenes
 import numpy as np
 import pytest
-import scenes
 from limit_surface import ids
 from limit_surface.reading import attributes, cage
 
 
 def moved_with_time():
     """Adds a sheet that nodes move along z by the number of the frame, and the baking modifier."""
-    ob = scenes.grid_with_holes()
-    group = bpy.data.node_groups.new("Move", "GeometryNodeTree")
-    group.is_modifier = True
-    for in_out in ("INPUT", "OUTPUT"):
-        group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
-    nodes, link = group.nodes, group.links.new
-    move, bake = nodes.new("GeometryNodeSetPosition"), nodes.new("GeometryNodeBake")
+    ob, group = node_scenes.moved_by_nodes("GeometryNodeInputSceneTime", "Frame")
+    bake = group.nodes.new("GeometryNodeBake")
     if "Geometry" not in bake.inputs:  # as in Blender 5.2
         bake.bake_items.new("GEOMETRY", "Geometry")
-    along_z = nodes.new("ShaderNodeCombineXYZ")
-    link(nodes.new("GeometryNodeInputSceneTime").outputs["Frame"], along_z.inputs["Z"])
-    link(along_z.outputs[0], move.inputs["Offset"])
-    link(nodes.new("NodeGroupInput").outputs[0], move.inputs["Geometry"])
-    link(move.outputs[0], bake.inputs["Geometry"])
-    link(bake.outputs["Geometry"], nodes.new("NodeGroupOutput").inputs[0])
-    modifier = ob.modifiers.new("Nodes", "NODES")
-    modifier.node_group = group
-    return ob, modifier
+    out = next(node for node in group.nodes if node.bl_idname == "NodeGroupOutput").inputs[0]
+    group.links.new(out.links[0].from_socket, bake.inputs["Geometry"])
+    group.links.new(bake.outputs["Geometry"], out)
+    return ob, ob.modifiers["Nodes"]
 
 
 @pytest.mark.parametrize("target", ["PACKED", "DISK"])

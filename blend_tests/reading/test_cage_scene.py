@@ -6,6 +6,7 @@ from pathlib import Path
 
 import bpy
 import limit_surface
+import node_scenes
 import numpy as np
 import pytest
 import scenes
@@ -30,28 +31,8 @@ def check_shift(ob, amount):
     np.testing.assert_allclose(shift, np.broadcast_to([0, 0, amount], shift.shape), atol=1e-6)
 
 
-def moved_by_nodes(node_type, output):
-    """Adds a sheet that Geometry Nodes move along z by the node's value."""
-    ob = scenes.grid_with_holes()
-    group = bpy.data.node_groups.new("Move", "GeometryNodeTree")
-    group.is_modifier = True
-    for in_out in ("INPUT", "OUTPUT"):
-        group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
-    nodes, link = group.nodes, group.links.new
-    move = nodes.new("GeometryNodeSetPosition")
-    along_z = nodes.new("ShaderNodeVectorMath")
-    along_z.operation = "MULTIPLY"
-    along_z.inputs[1].default_value = (0, 0, 1)
-    link(nodes.new(node_type).outputs[output], along_z.inputs[0])
-    link(along_z.outputs[0], move.inputs["Offset"])
-    link(nodes.new("NodeGroupInput").outputs[0], move.inputs["Geometry"])
-    link(move.outputs[0], nodes.new("NodeGroupOutput").inputs[0])
-    ob.modifiers.new("Nodes", "NODES").node_group = group
-    return ob, group
-
-
 def test_seconds_of_scene_time():
-    ob, _ = moved_by_nodes("GeometryNodeInputSceneTime", "Seconds")
+    ob, _ = node_scenes.moved_by_nodes("GeometryNodeInputSceneTime", "Seconds")
     scene = bpy.context.scene
     scene.render.fps, scene.render.fps_base = 60, 1.5
     scene.frame_set(30)
@@ -59,7 +40,7 @@ def test_seconds_of_scene_time():
 
 
 def test_active_camera():
-    ob, group = moved_by_nodes("GeometryNodeObjectInfo", "Location")
+    ob, group = node_scenes.moved_by_nodes("GeometryNodeObjectInfo", "Location")
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = (1, 2, 3)
     bpy.context.collection.objects.link(camera)

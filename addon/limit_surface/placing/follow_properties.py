@@ -7,10 +7,9 @@ from bpy.props import EnumProperty
 from .. import ids
 from ..nodes import groups
 from ..reading import rules
+from ..reading.modifier_kinds import DEFORMING_PARENTS
 from . import render_faces
 
-# Objects whose children they deform without a modifier
-_DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}
 # Modifiers that leave the mesh as it is
 _WITHOUT_EFFECT = {"PARTICLE_SYSTEM"}
 
@@ -97,7 +96,7 @@ def can_deform(surface: bpy.types.Object) -> bool:
     return bool(
         mesh.shape_keys
         or mesh.animation_data
-        or (surface.parent and surface.parent_type in _DEFORMING_PARENTS)
+        or (surface.parent and surface.parent_type in DEFORMING_PARENTS)
         or any(
             (modifier.show_viewport or modifier.show_render)
             and modifier.type not in _WITHOUT_EFFECT

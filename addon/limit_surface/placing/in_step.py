@@ -16,6 +16,7 @@ from typing import Any
 import bpy
 
 from ..nodes import groups
+from ..reading.modifier_kinds import DEFORMING_PARENTS
 
 # Of modifiers: what changes no shape in the viewport
 _WITHOUT_EFFECT = {
@@ -26,16 +27,13 @@ _WITHOUT_EFFECT = {
     *("open_output_attributes_panel", "open_warnings_panel"),
 }
 
-# Parents of these types deform their children without a modifier.
-_DEFORMING_PARENTS = ("ARMATURE", "LATTICE")
-
 
 def keep(copy: bpy.types.Object, original: bpy.types.Object) -> None:
     """Has Blender keep a new copy of an object in step with it. The copy may lack the last of the
     original's modifiers.
     """
     copy.animation_data_clear()
-    if copy.parent_type not in _DEFORMING_PARENTS:
+    if copy.parent_type not in DEFORMING_PARENTS:
         copy.parent = None
     copy.constraints.clear()
     copy.constraints.new("COPY_TRANSFORMS").target = original
@@ -74,7 +72,7 @@ def why_not(copy: bpy.types.Object, original: bpy.types.Object) -> str:
 
 
 def _deforming_parent(ob: bpy.types.Object) -> tuple[bpy.types.Object, str] | None:
-    deforms = ob.parent is not None and ob.parent_type in _DEFORMING_PARENTS
+    deforms = ob.parent is not None and ob.parent_type in DEFORMING_PARENTS
     return (ob.parent, ob.parent_type) if deforms else None
 
 

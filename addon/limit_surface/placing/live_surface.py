@@ -19,7 +19,7 @@ from .. import ids, native
 from ..errors import CageError
 from ..nodes import groups
 from ..nodes.capture import CHECKSUMS
-from ..reading import attributes, cage, private_scene, rules
+from ..reading import attributes, cage, copied_object, private_scene, rules
 from ..tasks.unchanged import faces_of
 from . import capture_place, following, live_source
 
@@ -199,8 +199,8 @@ def _evaluated_anew(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ca
     """Returns what *Limit Capture* hands on by what the file contains now."""
 
     def enable(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
-        for modifier in copy.modifiers if depsgraph.mode == "RENDER" else ():
-            modifier.show_viewport = modifier.show_render
+        if depsgraph.mode == "RENDER":
+            copied_object.show_as_rendered(copy)
 
     cut = rules.place_of_subsurf(ob)
     with cage.evaluated_copy(ob, cut, depsgraph, enable, settled=cut) as evaluated:

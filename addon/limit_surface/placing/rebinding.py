@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..counting import by_count
+from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..reading import attributes, cage
 from ..tasks.job import Progress
@@ -30,6 +30,7 @@ from .relocation import Elements, Relocation
 Method = Literal["CLOSEST", "UV", "FACE"]
 
 # What is turned with a root
+_THINGS = "strands and points"
 _POINTS = (ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT)
 _DIRECTIONS = (ids.NORMAL, ids.TANGENT)
 
@@ -48,7 +49,7 @@ class Rebound:
     def __str__(self) -> str:
         count = len(self.distances)
         are = by_count(count, "is", "are")
-        text = f"{_counted(count)} on {self.surface} {are} bound again"
+        text = f"{counted(count, _THINGS)} on {self.surface} {are} bound again"
         if count:
             median, largest = np.median(self.distances), self.distances.max()
             they = by_count(count, "it", "they")
@@ -76,13 +77,9 @@ class Rebound:
             "they stay where they are, and are selected",
         )
         return (
-            f"{_counted(self.lost)} on {self.surface} could not be kept, because "
+            f"{counted(self.lost, _THINGS)} on {self.surface} could not be kept, because "
             f"{self.reason}: {stay}"
         )
-
-
-def _counted(count: int) -> str:
-    return f"{count:,} {by_count(count, 'strand or point', 'strands and points')}"
 
 
 class Rebinding:

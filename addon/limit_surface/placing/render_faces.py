@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ..errors import CageError, RefusalError
-from ..reading import cage, modifier_kinds, rules
+from ..reading import cage, copied_object, modifier_kinds, rules
 
 if TYPE_CHECKING:
     import limitsurf
@@ -53,8 +53,7 @@ def _only_in_one(surface: bpy.types.Object) -> list[bpy.types.Modifier]:
 
 def _are_same(surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
     def as_rendered(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
-        for modifier in copy.modifiers:
-            modifier.show_viewport = modifier.show_render
+        copied_object.show_as_rendered(copy)
 
     shown = cage.read(surface, depsgraph)
     try:

@@ -16,3 +16,9 @@ def of(ob: bpy.types.Object) -> bpy.types.Object:
         if folder:
             modifier.bake_directory = folder
     return copy
+
+
+def show_as_rendered(copy: bpy.types.Object) -> None:
+    """Has the viewport run the modifiers that renders run."""
+    for modifier in copy.modifiers:
+        modifier.show_viewport = modifier.show_render

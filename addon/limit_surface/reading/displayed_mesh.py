@@ -22,7 +22,7 @@ import numpy as np
 from .. import ids
 from ..counting import counted
 from ..errors import DisplayedError
-from . import attributes, cage, rules, subdivided_mesh
+from . import attributes, cage, copied_object, rules, subdivided_mesh
 from .triangulation import TriangulatedQuads
 
 Kind = Literal["VIEWPORT", "RENDER"] | int
@@ -200,8 +200,7 @@ def _simplify(scene: bpy.types.Scene, kind: Kind) -> int:
 def _show(copy: bpy.types.Object, subsurf: str, kind: Kind) -> None:
     """Sets the modifier up so that the viewport shows what is asked for."""
     if kind == "RENDER":
-        for modifier in copy.modifiers:
-            modifier.show_viewport = modifier.show_render
+        copied_object.show_as_rendered(copy)
         if subsurf:
             copy.modifiers[subsurf].levels = copy.modifiers[subsurf].render_levels
     elif kind != "VIEWPORT":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What types of modifiers do to the faces of a mesh."""
+"""What types of modifiers, and of parents, do to the faces of a mesh."""
 
 #: The types of modifiers that move vertices, or change their data, and nothing else
 DEFORMING = {
@@ -12,3 +12,6 @@ DEFORMING = {
 
 #: The types that add faces after those of the mesh, which stay as they are
 APPENDING = {"ARRAY", "MIRROR", "SOLIDIFY"}
+
+#: The types of parents that deform their children without a modifier
+DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}

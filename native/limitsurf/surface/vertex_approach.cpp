@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/own_unit.h"
@@ -197,19 +198,37 @@ void turnBack(std::vector<Term>& terms, int turns) {
   }
 }
 
-/// A derivative's leading term that is larger than `least`, or zero. Terms that grow alike are one.
-Vector3 leadingDerivative(const std::vector<Term>& terms, double Term::* derivative, double least) {
+/// What a term contributes to a vector, and the size with which the length of a sum is compared.
+struct Part {
+  Vector3 value;
+  double size;
+};
+
+/// The leading sum of terms that is not zero, of terms in the order of dominance. Those that grow
+/// alike are added up. A sum counts as zero if it is at most `least` times the largest size in it.
+template <typename Terms, typename PartOf>
+Vector3 leadingSum(const Terms& terms, double least, const PartOf& partOf) {
   for (std::size_t i = 0; i < terms.size();) {
     Vector3 sum = Vector3::Zero();
-    const Term& leading = terms[i];
+    double largest = 0;
+    const auto& leading = terms[i];
     for (; i < terms.size() && !dominates(leading, terms[i]); ++i) {
-      sum += terms[i].*derivative * terms[i].coefficient;
+      const Part part = partOf(terms[i]);
+      sum += part.value;
+      largest = std::max(largest, part.size);
     }
-    if (sum.norm() > least) {
+    if (sum.norm() > least * largest) {
       return sum;
     }
   }
   return Vector3::Zero();
+}
+
+/// The leading term of a derivative. It counts as zero if it is at most `least`.
+Vector3 leadingDerivative(const std::vector<Term>& terms, double Term::* derivative, double least) {
+  return leadingSum(terms, least, [&](const Term& term) -> Part {
+    return {term.*derivative * term.coefficient, 1};
+  });
 }
 
 /// What two terms contribute to du x dv.
@@ -223,8 +242,8 @@ CrossTerm crossTerm(const Term& a, const Term& b) {
           area * a.coefficient.cross(b.coefficient)};
 }
 
-/// The leading term of the cross product, in which those that grow alike are added up. Products of
-/// coefficients count as zero if they are at most `least`.
+/// The leading term of the cross product. Products of coefficients count as zero if they are at
+/// most `least`.
 Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
   std::vector<CrossTerm> crosses;
   for (auto a = terms.begin(); a != terms.end(); ++a) {
@@ -233,19 +252,8 @@ Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
     }
   }
   std::stable_sort(crosses.begin(), crosses.end(), dominates<CrossTerm, CrossTerm>);
-  for (std::size_t i = 0; i < crosses.size();) {
-    Vector3 sum = Vector3::Zero();
-    double largest = 0;
-    const CrossTerm& leading = crosses[i];
-    for (; i < crosses.size() && !dominates(leading, crosses[i]); ++i) {
-      sum += crosses[i].normal;
-      largest = std::max(largest, crosses[i].area);
-    }
-    if (sum.norm() > least * largest) {
-      return sum;
-    }
-  }
-  return Vector3::Zero();
+  return leadingSum(crosses, least,
+                    [](const CrossTerm& cross) -> Part { return {cross.normal, cross.area}; });
 }
 
 }  // namespace
