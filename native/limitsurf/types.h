@@ -17,6 +17,13 @@ using FloatPoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// One 3 x 3 matrix per row, row-major.
 using Rotations = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
 
+/// Arguments of these types refer to matrices with contiguous rows, or to memory of their layout
+/// (Eigen::Map).
+template <typename Rows>
+using RowsIn = Eigen::Ref<const Rows, 0, Eigen::OuterStride<Rows::ColsAtCompileTime>>;
+template <typename Rows>
+using RowsOut = Eigen::Ref<Rows, 0, Eigen::OuterStride<Rows::ColsAtCompileTime>>;
+
 /// A read-only view of contiguous elements. It does not own them.
 template <typename T>
 class Span {

@@ -202,7 +202,7 @@ struct Ranges {
   using Row = Eigen::Array<double, 1, 3>;
 
   /// At least one row.
-  explicit Ranges(Eigen::Ref<const Points> rows) {
+  explicit Ranges(const RowsIn<Points>& rows) {
     // Four rows at a time, which the processor's vectors can hold without a gap.
     using Four = Eigen::Array<double, 1, 12>;
     const Eigen::Index fours = rows.rows() / 4;
@@ -237,7 +237,7 @@ struct Ranges {
 };
 
 /// Throws MeshError for the first position that is not finite or too far away, if there is one.
-void checkEach(const Points& positions) {
+void checkEach(const RowsIn<Points>& positions) {
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (!positions.row(v).allFinite()) {
       refuse("positions: vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1),
@@ -252,7 +252,7 @@ void checkEach(const Points& positions) {
 
 }  // namespace
 
-void checkPositions(const Points& positions, int vertex_count, int threads) {
+void checkPositions(const RowsIn<Points>& positions, int vertex_count, int threads) {
   if (positions.rows() != vertex_count) {
     refuse("positions has ", positions.rows(), " rows; the mesh has ", vertex_count, " vertices");
   }

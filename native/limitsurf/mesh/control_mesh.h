@@ -96,6 +96,6 @@ constexpr double kLeastExtent = 0x1p-400;
 /// Throws MeshError for another number of rows than vertices, for the first row that is not finite
 /// or beyond kLargestCoordinate, which it names, and for positions closer together than
 /// kLeastExtent.
-void checkPositions(const Points& positions, int vertex_count, int threads);
+void checkPositions(const RowsIn<Points>& positions, int vertex_count, int threads);
 
 }  // namespace limitsurf

@@ -334,6 +334,7 @@ class LimitSurface {
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> bounds(int threads = 0) const;
 
  private:
+  friend class FixedSamples;
   friend class StrandPoser;
   friend class SurfacePatches;
   struct Data;

@@ -37,8 +37,11 @@ void fill(std::vector<T>& values, std::size_t count, const Value&... value) {
 
 }  // namespace
 
-Pose::Pose(const TileTable& table)
-    : table_(&table), ring_steps_(table.rings.size(), 0), steps_made_(table.ring_tiles.size()) {
+Pose::Pose(const TileTable& table, const PosePart* part)
+    : table_(&table),
+      part_(part),
+      ring_steps_(table.rings.size(), 0),
+      steps_made_(table.ring_tiles.size()) {
   fill(rings_, table.rings.size());
   std::size_t tiles[TileTable::kMostDepth + 1] = {};
   for (const RingTile& tile : table.ring_tiles) {
@@ -99,7 +102,7 @@ double powerOfTwo(double size) { return size > 0 ? std::ldexp(1, std::ilogb(size
 
 }  // namespace
 
-void Pose::set(const Points& cage, int threads) {
+void Pose::set(const RowsIn<Points>& cage, int threads) {
   is_set_ = false;
   const RefinedPoints& refined = table_->points;
   points_.resize(static_cast<std::size_t>(refined.size()));
@@ -128,10 +131,11 @@ void Pose::set(const Points& cage, int threads) {
   residual_unit_ = powerOfTwo(largest_coordinate_);
   refinePoints();
   steps_made_.clear();
-  parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+  const std::size_t rings = part_ ? part_->rings.size() : rings_.size();
+  parallelFor(rings, kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     std::vector<Padded> memory;
-    for (std::size_t ring = begin; ring < end; ++ring) {
-      setRing(static_cast<int>(ring), memory);
+    for (std::size_t i = begin; i < end; ++i) {
+      setRing(part_ ? part_->rings[i] : static_cast<int>(i), memory);
     }
   });
   is_set_ = true;
@@ -186,13 +190,20 @@ void Pose::refinePoints() {
   const int cage = refined.cagePoints();
   residuals_.resize(table_->fine ? static_cast<std::size_t>(refined.size() - cage) : 0);
   InterruptionStride stride;
-  for (int i = cage; i < refined.size(); ++i) {  // a point's sources have smaller numbers
+  const auto refine = [&](int point) {
     stride.step();
     if (table_->fine) {
-      refinePoint<true>(i);
+      refinePoint<true>(point);
     } else {
-      refinePoint<false>(i);
+      refinePoint<false>(point);
     }
+  };
+  if (part_) {
+    std::for_each(part_->points.begin(), part_->points.end(), refine);
+    return;
+  }
+  for (int i = cage; i < refined.size(); ++i) {  // a point's sources have smaller numbers
+    refine(i);
   }
 }
 

@@ -8,7 +8,9 @@
 #include "limitsurf/eigen/tile_grid.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/jet.h"
+#include "limitsurf/surface/pose_part.h"
 #include "limitsurf/surface/steps_made.h"
+#include "limitsurf/types.h"
 
 namespace limitsurf {
 
@@ -51,10 +53,11 @@ class Pose {
     Padded points[tile_grid::kOuter];
   };
 
-  explicit Pose(const TileTable& table);
+  /// With `part`, which must live on, the pose is one of these points and rings alone.
+  explicit Pose(const TileTable& table, const PosePart* part = nullptr);
 
   /// If something is thrown meanwhile, isSet() is false until the next time.
-  void set(const Points& cage, int threads);
+  void set(const RowsIn<Points>& cage, int threads);
   bool isSet() const { return is_set_; }
 
   /// The longest side of the bounding box of the control points.
@@ -101,6 +104,7 @@ class Pose {
   void makeGrids(int tile, int made, int steps, Grid grids[]) const;
 
   const TileTable* table_;
+  const PosePart* part_;
   bool is_set_ = false;
   double extent_ = 0, largest_coordinate_ = 0;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth

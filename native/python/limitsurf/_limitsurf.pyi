@@ -184,6 +184,19 @@ class EdgeCurves(metaclass=_BoundType):
         threads: int = 0,
     ) -> AlongCurves: ...
 
+class FixedSamples(metaclass=_BoundType):
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...  # surfaces make them
+    def __len__(self) -> int: ...
+    @property
+    def derivatives(self) -> Literal[0, 1]: ...
+    @property
+    def vertex_count(self) -> int: ...
+    @property
+    def nbytes(self) -> int: ...
+    def evaluate(
+        self, positions: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
+    ) -> Evaluation: ...
+
 class StrandPoser(metaclass=_BoundType):
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...  # surfaces make them
     def __len__(self) -> int: ...
@@ -364,6 +377,14 @@ class LimitSurface(metaclass=_BoundType):
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> TileQuadtree: ...
+    def fixed_samples(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        derivatives: Literal[0, 1] = 0,
+        *,
+        threads: int = 0,
+    ) -> FixedSamples: ...
     def strand_poser(
         self,
         face: ArrayLike,

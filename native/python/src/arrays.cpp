@@ -230,6 +230,16 @@ Points pointsOf(const Doubles& array, int threads) {
   return points;
 }
 
+Doubles positionRows(const py::object& positions, int vertex_count) {
+  Doubles array = doubles(positions, "positions");
+  shapeEmpty(array, {0, 3});
+  if (array.ndim() != 2 || array.shape(1) != 3 || array.shape(0) != vertex_count) {
+    throw MeshError("positions has shape " + shapeText(array) + "; expected (" +
+                    std::to_string(vertex_count) + ", 3)");
+  }
+  return array;
+}
+
 py::array_t<double> pointArray(Points points) { return rowArray(std::move(points)); }
 
 Output::Output(const py::dtype& dtype, std::vector<py::ssize_t> shape)

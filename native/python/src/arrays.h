@@ -186,6 +186,10 @@ std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& obj
 Points pointsOf(const Doubles& array, int threads = 1);
 py::array_t<double> pointArray(Points points);
 
+/// The positions of a control mesh's vertices, (vertex_count, 3). Throws MeshError for another
+/// shape.
+Doubles positionRows(const py::object& positions, int vertex_count);
+
 /// An array of results, float64 or float32. Without a shape it is None.
 class Output {
  public:

@@ -10,6 +10,7 @@
 #include "displacement.h"
 #include "docstrings.h"
 #include "edge_curves.h"
+#include "fixed_samples.h"
 #include "projection.h"
 #include "shared_surface.h"
 #include "strand_poser.h"
@@ -26,13 +27,7 @@ Points currentPositions(const SharedSurface& shared) {
 
 void setPositions(SharedSurface& shared, const py::object& positions, int threads) {
   checkThreads(threads);
-  Doubles array = doubles(positions, "positions");
-  shapeEmpty(array, {0, 3});
-  if (array.ndim() != 2 || array.shape(1) != 3 || array.shape(0) != shared.mesh->vertexCount()) {
-    throw MeshError("positions has shape " + shapeText(array) + "; expected (" +
-                    std::to_string(shared.mesh->vertexCount()) + ", 3)");
-  }
-  Points points = pointsOf(array, threads);
+  Points points = pointsOf(positionRows(positions, shared.mesh->vertexCount()), threads);
   const LongCall call(shared.lock, CallLock::Access::change);
   shared.setPositions(std::move(points), threads);
 }
@@ -132,6 +127,7 @@ void bindLimitSurface(py::module_& module) {
   bindEvaluation(type);
   bindDataMakers(type);
   bindSurfaceTiles(type);
+  bindFixedSamplesMaker(type);
   bindStrandPoserMaker(type);
   bindEdgeCurveMakers(type);
   bindTangentFrames(type);

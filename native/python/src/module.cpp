@@ -2,6 +2,7 @@
 #include "control_mesh.h"
 #include "displacement.h"
 #include "edge_curves.h"
+#include "fixed_samples.h"
 #include "frame_rows.h"
 #include "guides.h"
 #include "images.h"
@@ -36,6 +37,7 @@ PYBIND11_MODULE(limitsurf_in_main_interpreter, module) {
   limitsurf::python::bindShadingFrames(module);
   limitsurf::python::bindSubdividedFaces(module);
   limitsurf::python::bindPtexLayout(module);
+  limitsurf::python::bindFixedSamples(module);
   limitsurf::python::bindStrandPoser(module);
   limitsurf::python::bindEdgeCurves(module);
   limitsurf::python::bindFrameRows(module);

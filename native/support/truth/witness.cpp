@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "limitsurf/surface/fixed/fixed_samples.h"
 #include "support/truth/corner_points.h"
 
 namespace limitsurf::test {
@@ -64,6 +65,10 @@ void compareWithSubdivision(const std::string& name, const Cage& cage,
   for (Derivatives order : kOrders) {
     evaluations.push_back(surface.evaluate(at, order, order != Derivatives::none));
   }
+  std::vector<Evaluation> fixed;
+  for (Derivatives order : {Derivatives::none, Derivatives::first}) {
+    fixed.push_back(FixedSamples(surface, at, order).evaluate(cage.positions));
+  }
   for (int i = 0; i < static_cast<int>(at.size()); ++i) {
     const CornerPoint* point = corners.at(at[i]);
     Truth truth;
@@ -79,6 +84,10 @@ void compareWithSubdivision(const std::string& name, const Cage& cage,
     }
     for (int order = 0; order < 3; ++order) {
       accuracy.check(at[i], rowOf(evaluations[order], i), upTo(kOrders[order], truth));
+    }
+    truth.values[kNormal].setConstant(NAN);
+    for (int order = 0; order < 2; ++order) {
+      accuracy.check(at[i], rowOf(fixed[order], i), upTo(kOrders[order], truth));
     }
   }
   all.merge(accuracy);

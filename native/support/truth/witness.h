@@ -10,9 +10,9 @@
 
 namespace limitsurf::test {
 
-/// Holds LimitSurface to the promised accuracy against DeepSubdivision at all the locations; at
-/// irregular vertices themselves also to what must be missing there. Adds the worst figures to
-/// `all`.
+/// Holds LimitSurface and FixedSamples to the promised accuracy against DeepSubdivision at all the
+/// locations; at irregular vertices themselves also to what must be missing there. Adds the worst
+/// figures to `all`.
 void compareWithSubdivision(const std::string& name, const Cage& cage,
                             const std::vector<Location>& at, Accuracy& all);
 

@@ -39,6 +39,16 @@ struct PatchKernels {
   template <typename Real>
   EvaluateSingles<Real> evaluateSingles(int order) const;
 
+  /// The same where weights are given, for positions and first derivatives.
+  template <typename Real>
+  using EvaluateWeighted = void (*)(const WeightedRun& run, const PatchResults<Real>& results);
+
+  EvaluateWeighted<double> weighted_double[2];
+  EvaluateWeighted<float> weighted_float[2];
+
+  template <typename Real>
+  EvaluateWeighted<Real> evaluateWeighted(int order) const;
+
   /// For the instruction set in use.
   static const PatchKernels& get();
 };
@@ -66,6 +76,14 @@ inline PatchKernels::EvaluateSingles<double> PatchKernels::evaluateSingles(int o
 template <>
 inline PatchKernels::EvaluateSingles<float> PatchKernels::evaluateSingles(int order) const {
   return singles_float[order];
+}
+template <>
+inline PatchKernels::EvaluateWeighted<double> PatchKernels::evaluateWeighted(int order) const {
+  return weighted_double[order];
+}
+template <>
+inline PatchKernels::EvaluateWeighted<float> PatchKernels::evaluateWeighted(int order) const {
+  return weighted_float[order];
 }
 
 }  // namespace limitsurf

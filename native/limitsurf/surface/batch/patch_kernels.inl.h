@@ -334,6 +334,7 @@ void evaluate(const PatchRun& run, const PatchResults<Real>& results) {
 }
 
 #include "limitsurf/surface/batch/row_kernels.inl.h"
+#include "limitsurf/surface/batch/weighted_kernels.inl.h"
 
 inline const PatchKernels kKernels = {
     {evaluate<0, double>, evaluate<1, double>, evaluate<2, double>},
@@ -342,4 +343,6 @@ inline const PatchKernels kKernels = {
     {evaluateOnGrids<0, float>, evaluateOnGrids<1, float>, evaluateOnGrids<2, float>},
     {evaluateSingles<0, double>, evaluateSingles<1, double>, evaluateSingles<2, double>},
     {evaluateSingles<0, float>, evaluateSingles<1, float>, evaluateSingles<2, float>},
+    {evaluateWeighted<0, double>, evaluateWeighted<1, double>},
+    {evaluateWeighted<0, float>, evaluateWeighted<1, float>},
 };

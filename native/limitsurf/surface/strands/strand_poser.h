@@ -14,11 +14,6 @@ namespace limitsurf {
 
 /// One quaternion w, x, y, z per row, in single precision.
 using FloatRotations = Eigen::Matrix<float, Eigen::Dynamic, 4, Eigen::RowMajor>;
-/// Arguments of these types refer to such matrices, or to memory of their layout (Eigen::Map).
-template <typename Rows>
-using RowsIn = Eigen::Ref<const Rows, 0, Eigen::OuterStride<Rows::ColsAtCompileTime>>;
-template <typename Rows>
-using RowsOut = Eigen::Ref<Rows, 0, Eigen::OuterStride<Rows::ColsAtCompileTime>>;
 
 /// Bound on the error of posed points before they are rounded to float: relative to the diagonal of
 /// the control mesh's bounding box, as `to_strands` carries it, plus the distance of the point from
