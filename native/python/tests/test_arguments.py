@@ -91,6 +91,10 @@ CASES = {
     "box_weights": (ls.box_weights, {"normals": UP, "matrix": MATRIX}),
     "SubdividedFaces.locate": (ls.SubdividedFaces(SURFACE.mesh, TWICE.mesh).locate, ON),
     "EdgeCurves.at": (CURVES.at, {"curve": [0, 0, 0], "arc": [0.1, 0.2, 0.3]}),
+    "FixedSamples.evaluate": (
+        SURFACE.fixed_samples(**ON).evaluate,
+        {"positions": SQUARES.tolist()},
+    ),
     "StrandPoser.pose": (POSER.pose, {"rest_points": POINTS, "matrix": MATRIX}),
     "StrandPoser.repose": (
         lambda **given: POSER.repose(points=np.zeros((3, 3), np.float32), **given),
@@ -141,6 +145,7 @@ CASES = {
     "LimitSurface.curvature": (SURFACE.curvature, ON),
     "LimitSurface.stencils": (SURFACE.stencils, ON),
     "LimitSurface.tiles": (SURFACE.tiles, ON),
+    "LimitSurface.fixed_samples": (SURFACE.fixed_samples, ON),
     "LimitSurface.edge_curves": (SURFACE.edge_curves, {"edges": FACES[:2, :2].tolist()}),
     "LimitSurface.strand_poser": (
         SURFACE.strand_poser,

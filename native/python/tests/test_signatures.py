@@ -30,7 +30,12 @@ def is_property(node):
     return any(isinstance(d, ast.Name) and d.id == "property" for d in node.decorator_list)
 
 
-UNCALLABLE = ("EdgeCurves.__init__", "StrandPoser.__init__", "SurfaceData.__init__")
+UNCALLABLE = (
+    "EdgeCurves.__init__",
+    "FixedSamples.__init__",
+    "StrandPoser.__init__",
+    "SurfaceData.__init__",
+)
 FUNCTIONS = {name: node for name, node in functions() if name not in UNCALLABLE}
 
 
