@@ -61,7 +61,7 @@ int runTables(int argc, char** argv, int sample_count) {
 
   std::vector<Group> groups = evaluationGroups(sample_count);
   for (Group& group : depthGroups(sample_count)) groups.push_back(std::move(group));
-  for (Group& group : fixedGroups(sample_count)) groups.push_back(std::move(group));
+  for (Group& group : fixedGroups()) groups.push_back(std::move(group));
   for (Group& group : setupGroups()) groups.push_back(std::move(group));
   for (Group& group : strandGroups(sample_count)) groups.push_back(std::move(group));
   for (Group& group : samplingGroups(sample_count)) groups.push_back(std::move(group));
@@ -77,7 +77,7 @@ int runTables(int argc, char** argv, int sample_count) {
   reporter.printTable(kDepthTable, "By distance from an extraordinary vertex, ns per sample",
                       {"face", "distance", "result"}, groups);
   reporter.printTable(kFixedTable, "Samples that stay while the mesh deforms, ns per sample",
-                      {"samples", "result"}, groups);
+                      {"mesh", "a face", "result"}, groups);
   reporter.printTable(kOpeningTable, "Opening a mesh, ns per face", {"mesh", "faces", "irregular"},
                       groups);
   reporter.printTable(kPosingTable, "New positions, ns per irregular face",

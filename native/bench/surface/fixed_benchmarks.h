@@ -9,8 +9,8 @@ namespace limitsurf::bench {
 
 constexpr char kFixedTable[] = "fixed";
 
-/// Benchmarks of about `sample_count` locations that stay while a mesh gets the positions of one
-/// frame after the other.
-std::vector<Group> fixedGroups(int sample_count);
+/// Benchmarks of locations that stay while a mesh gets the positions of one frame after the other:
+/// one and ten on each Ptex face.
+std::vector<Group> fixedGroups();
 
 }  // namespace limitsurf::bench

@@ -38,8 +38,8 @@ constexpr char kFixedClassDoc[] =
 
 This is what OpenSubdiv's LimitStencilTable is for, but exact. Take it for roots, particles or tracked
 points that are evaluated in every frame. It is the fastest way where there are few locations on each
-face: set_positions() and evaluate() prepare the whole mesh first. With hundreds of locations on each
-face they are as fast, and need less memory.
+face: set_positions() and evaluate() prepare the whole mesh first. On quads with a hundred locations each
+they are as fast.
 
 Several threads may use one at the same time. They cannot be copied or pickled.
 )";

@@ -230,4 +230,50 @@ Cage semiSharpCage(int side) {
   return cage;
 }
 
+Cage characterCage(int side) {
+  constexpr std::size_t kQuadsPerCut = 40;
+  constexpr int kFirstLoop = 10, kRowsPerLoop = 20;
+  Cage cage = largeCage(side);
+  std::vector<std::vector<int>> quads;
+  quads.swap(cage.faces);
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    const std::vector<int>& quad = quads[i];
+    if (i % kQuadsPerCut == kQuadsPerCut - 1) {
+      cage.faces.push_back({quad[0], quad[1], quad[2]});
+      cage.faces.push_back({quad[0], quad[2], quad[3]});
+    } else {
+      cage.faces.push_back(quad);
+    }
+  }
+  for (const auto& [a, b] : edgesOf(cage)) {
+    const int row = a / (side + 1);
+    if (b - a == 1 && b / (side + 1) == row && row % kRowsPerLoop == kFirstLoop) {
+      sharpenEdge(cage, a, b, 2.5);
+    }
+  }
+  return cage;
+}
+
+Cage scanCage(int side) {
+  constexpr double kNoise = 0.15, kShift = 0.2, kHeight = 0.2;
+  BenchmarkRandom random(5);
+  Cage cage = fullGrid(side, side);
+  std::vector<std::vector<int>> quads;
+  quads.swap(cage.faces);
+  for (const std::vector<int>& quad : quads) {
+    const int turn = random.uniform() < 0.5 ? 0 : 1;
+    const auto corner = [&](int i) { return quad[static_cast<std::size_t>((turn + i) % 4)]; };
+    cage.faces.push_back({corner(0), corner(1), corner(2)});
+    cage.faces.push_back({corner(2), corner(3), corner(0)});
+  }
+  for (Eigen::Index v = 0; v < cage.positions.rows(); ++v) {
+    const double x = cage.positions(v, 0) / side, y = cage.positions(v, 1) / side;
+    const double wave = side * kHeight * std::sin(5 * x) * std::cos(4 * y);
+    cage.positions(v, 2) = wave + random.uniform(-kNoise, kNoise);
+    cage.positions(v, 0) += random.uniform(-kShift, kShift);
+    cage.positions(v, 1) += random.uniform(-kShift, kShift);
+  }
+  return cage;
+}
+
 }  // namespace limitsurf::test

@@ -38,4 +38,11 @@ Cage largeCage(int side);
 /// side x side quads. Every edge is semi-sharp, with a random sharpness from 0.5 to 4.
 Cage semiSharpCage(int side);
 
+/// largeCage() as a character is modelled: every 40th quad is cut into two triangles, and every
+/// 20th row has a semi-sharp edge loop, so that a quarter of the faces is irregular.
+Cage characterCage(int side);
+
+/// 2 side^2 triangles with diagonals in random directions and noise, as of a scanner.
+Cage scanCage(int side);
+
 }  // namespace limitsurf::test

@@ -17,7 +17,7 @@ namespace limitsurf {
 ///
 /// Where there are few samples on each face, it takes a tenth of the time of
 /// LimitSurface::setPositions() and evaluate(), and a fortieth on triangle meshes: only what the
-/// samples depend on is read. On faces with hundreds of samples each, evaluate() is as fast.
+/// samples depend on is read. On quads with a hundred samples each, evaluate() is as fast.
 ///
 /// On a quad whose vertices are all regular a sample keeps its parameters, and elsewhere the
 /// weights of the vertices that it depends on. A sample that depends on more than kMostWeights
