@@ -8,11 +8,16 @@
 #include "limitsurf/eigen/tile_grid.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/jet.h"
-#include "limitsurf/surface/pose_part.h"
 #include "limitsurf/surface/steps_made.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
+
+/// The points and rings of a table that some of its tiles need.
+struct PosePart {
+  std::vector<int> points;  ///< refined points, each after those that it is made of
+  std::vector<int> rings;
+};
 
 /// Everything in a surface that depends on the positions of its control points.
 ///

@@ -35,6 +35,7 @@ PIXELS = np.ones((4, 4, 4)).tolist()
 COLOURS = [[0.5, 0.5, 0.5, 1.0]] * 3
 MATRIX = np.eye(4).tolist()
 VIEW = np.diag([0.3, 0.3, -0.1, 1.0]).tolist()
+SAMPLES = SURFACE.fixed_samples(FACE, UV)
 POSER = SURFACE.strand_poser(FACE, UV, [[0.0, 0, 0]] * 3, TURNS)
 IMAGE = ls.FilteredImage(np.ones((4, 4, 4)))
 GREY = ls.FilteredImage(np.ones((4, 4, 1)))
@@ -92,7 +93,7 @@ CASES = {
     "SubdividedFaces.locate": (ls.SubdividedFaces(SURFACE.mesh, TWICE.mesh).locate, ON),
     "EdgeCurves.at": (CURVES.at, {"curve": [0, 0, 0], "arc": [0.1, 0.2, 0.3]}),
     "FixedSamples.evaluate": (
-        SURFACE.fixed_samples(**ON).evaluate,
+        SAMPLES.evaluate,
         {"positions": SQUARES.tolist()},
     ),
     "StrandPoser.pose": (POSER.pose, {"rest_points": POINTS, "matrix": MATRIX}),

@@ -77,7 +77,8 @@ def test_take_lists_and_other_types(surface):
 def test_depend_on_no_thread(surface):
     samples = surface.fixed_samples(*places(surface), 1, threads=1)
     other = surface.fixed_samples(*places(surface), 1)
-    one, all_cores = samples.evaluate(surface.positions, threads=1), other.evaluate(surface.positions)
+    one = samples.evaluate(surface.positions, threads=1)
+    all_cores = other.evaluate(surface.positions)
     np.testing.assert_array_equal(one.position, all_cores.position)
     np.testing.assert_array_equal(one.dv, all_cores.dv)
 
@@ -112,7 +113,7 @@ def test_serve_several_threads_at_once():
 def test_say_what_is_wrong(surface):
     samples = surface.fixed_samples([0], [[0.5, 0.5]])
     count = len(surface.positions)
-    with pytest.raises(ls.MeshError, match=rf"positions has shape \(2, 3\); expected \({count}, 3\)"):
+    with pytest.raises(ls.MeshError, match=rf"has shape \(2, 3\); expected \({count}, 3\)"):
         samples.evaluate(np.zeros((2, 3)))
     broken = surface.positions
     broken[1, 2] = np.nan

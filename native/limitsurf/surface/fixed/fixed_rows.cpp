@@ -8,7 +8,7 @@
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/batch/patch_run.h"
 #include "limitsurf/surface/fixed/fixed_samples.h"
-#include "limitsurf/surface/stencil_row.h"
+#include "limitsurf/surface/stencils/stencil_row.h"
 
 namespace limitsurf {
 namespace {

@@ -13,8 +13,8 @@
 #include "limitsurf/row_check.h"
 #include "limitsurf/surface/batch/patch_kernels.h"
 #include "limitsurf/surface/fixed/fixed_rows.h"
+#include "limitsurf/surface/fixed/pose_part.h"
 #include "limitsurf/surface/limit_surface_data.h"
-#include "limitsurf/surface/pose_part.h"
 
 namespace limitsurf {
 namespace {
@@ -179,7 +179,7 @@ FixedSamples::FixedSamples(const LimitSurface& surface, const LocationBatch& at,
     posed.push_back(place.tile);
   }
   if (!posed.empty()) {
-    data_->part = PosePart(of.table, std::move(posed));
+    data_->part = posePart(of.table, std::move(posed));
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/pose_part.h"
+#include "limitsurf/surface/fixed/pose_part.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -31,7 +31,8 @@ void addPoints(const TileTable& table, TileRef ref, std::vector<int>& points,
 
 }  // namespace
 
-PosePart::PosePart(const TileTable& table, std::vector<TileRef> tiles) {
+PosePart posePart(const TileTable& table, std::vector<TileRef> tiles) {
+  PosePart part;
   const auto key = [](TileRef tile) { return std::uint64_t{tile.kind} << 32 | tile.index; };
   std::sort(tiles.begin(), tiles.end(), [&](TileRef a, TileRef b) { return key(a) < key(b); });
   const auto end = std::unique(tiles.begin(), tiles.end(),
@@ -40,7 +41,7 @@ PosePart::PosePart(const TileTable& table, std::vector<TileRef> tiles) {
   InterruptionStride stride;
   std::for_each(tiles.begin(), end, [&](TileRef tile) {
     stride.step();
-    addPoints(table, tile, waiting, rings);
+    addPoints(table, tile, waiting, part.rings);
   });
   std::vector<bool> is_found(static_cast<std::size_t>(table.points.size()));
   while (!waiting.empty()) {
@@ -51,11 +52,13 @@ PosePart::PosePart(const TileTable& table, std::vector<TileRef> tiles) {
       continue;
     }
     is_found[static_cast<std::size_t>(point)] = true;
-    points.push_back(point);
+    part.points.push_back(point);
     const Span<int> sources = table.points.sources(point);
     waiting.insert(waiting.end(), sources.begin(), sources.end());
   }
-  std::sort(points.begin(), points.end());  // a point's sources have smaller numbers
+  // A point's sources have smaller numbers.
+  std::sort(part.points.begin(), part.points.end());
+  return part;
 }
 
 }  // namespace limitsurf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/stencil_row.h"
+#include "limitsurf/surface/stencils/stencil_row.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limitsurf/surface/limit_surface_data.h"
-#include "limitsurf/surface/stencil_row.h"
+#include "limitsurf/surface/stencils/stencil_row.h"
 
 namespace limitsurf {
 namespace {
