@@ -124,14 +124,18 @@ TEST(FixedSamples, FollowEveryPose) {
   }
 }
 
-TEST(FixedSamples, FollowSmallFacesFarFromTheOrigin) {
-  for (const Cage& cage : {mixture(4), fan(40, true, 5), perturbed(grid(6, 6), 0.2, 1)}) {
-    const Cage far = placed(cage, 1, Vector3(1e5, -2e5, 3e5));
-    const LimitSurface surface = limitSurface(far);
-    const std::vector<Location> at = places(far);
-    const Evaluation got = FixedSamples(surface, at, Derivatives::first).evaluate(far.positions);
-    const Evaluation expected = surface.evaluate(at, Derivatives::first);
-    expectSame(got, expected, diagonal(far.positions), at, 3e5 * 0x1p-52);
+TEST(FixedSamples, KeepTheirDerivativesFarFromTheOrigin) {
+  for (Cage cage : {mixture(4), ngon(6, 3), perturbed(grid(6, 6), 0.2, 1)}) {
+    // Coordinates are multiples of 2^-20, which are still there far away.
+    cage.positions = (cage.positions * 0x1p20).array().round() * 0x1p-20;
+    const Vector3 shift(0x1p17, -0x1p18, 0x1p18);
+    const LimitSurface surface = limitSurface(cage);
+    const std::vector<Location> at = places(cage);
+    const FixedSamples samples(surface, at, Derivatives::first);
+    Evaluation got = samples.evaluate(placed(cage, 1, shift).positions);
+    got.position.rowwise() -= shift.transpose();
+    expectSame(got, samples.evaluate(cage.positions), diagonal(cage.positions), at,
+               0x1p18 * 0x1p-52);
   }
 }
 
