@@ -77,7 +77,7 @@ int runTables(int argc, char** argv, int sample_count) {
   reporter.printTable(kDepthTable, "By distance from an extraordinary vertex, ns per sample",
                       {"face", "distance", "result"}, groups);
   reporter.printTable(kFixedTable, "Samples that stay while the mesh deforms, ns per sample",
-                      {"mesh", "a face", "result"}, groups);
+                      {"mesh", "samples a Ptex face", "result"}, groups);
   reporter.printTable(kOpeningTable, "Opening a mesh, ns per face", {"mesh", "faces", "irregular"},
                       groups);
   reporter.printTable(kPosingTable, "New positions, ns per irregular face",

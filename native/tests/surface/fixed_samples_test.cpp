@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "limitsurf/error.h"
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/surface/batch/instruction_sets.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
@@ -23,19 +24,9 @@ namespace {
 
 constexpr Derivatives kFixedOrders[] = {Derivatives::none, Derivatives::first};
 
-/// Locations of every kind: anywhere on every face, near its corners and at them.
 std::vector<Location> places(const Cage& cage) {
   Random random(3);
-  std::vector<Location> at;
-  const int faces = static_cast<int>(ptexFaces(cage).size());
-  for (int face = 0; face < faces; ++face) {
-    at += anywhere(face, 3, random);
-    for (int corner = 0; corner < 4; ++corner) {
-      at.push_back(cornerLocation(face, corner));
-      at += shells(face, corner, {1, 4, 9, 30});
-    }
-  }
-  return at;
+  return everywhere(cage, {1, 4, 9, 30}, 3, random);
 }
 
 /// Meshes whose samples have all kinds of weights, and some that have too many.
@@ -173,6 +164,50 @@ TEST(FixedSamples, DependNeitherOnThreadsNorOnOtherSamples) {
         EXPECT_TRUE(sameBits(some.*member, expected));
       }
     }
+  }
+}
+
+TEST(FixedSamples, DependOnNoThreadInManyTasks) {
+  // More vertices than one task copies, and more samples of each kind than one task evaluates.
+  Cage cage = perturbed(torus(140, 130), 0.01, 2);
+  for (std::size_t face = 0; face < 40; ++face) {
+    const std::vector<int> quad = cage.faces[face];
+    sharpenEdge(cage, quad[0], quad[1], 2.5);
+  }
+  const LimitSurface surface = limitSurface(cage);
+  std::vector<Location> at;
+  Random random(4);
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    at += anywhere(face, face < 200 ? 100 : 2, random);
+  }
+  const FixedSamples samples(surface, at, Derivatives::first);
+  const Evaluation one = samples.evaluate(cage.positions, 1);
+  const Evaluation two = samples.evaluate(cage.positions, 2);
+  EXPECT_TRUE(sameBits(one.position, two.position));
+  EXPECT_TRUE(sameBits(one.du, two.du));
+  EXPECT_TRUE(sameBits(one.dv, two.dv));
+  expectSame(one, surface.evaluate(at, Derivatives::first), diagonal(cage.positions), at);
+}
+
+TEST(FixedSamples, GoOnAfterAnInterruption) {
+  struct Interrupted {};
+  const Cage cage = fan(40, true, 5);  // some of its samples are posed, others have weights
+  const LimitSurface surface = limitSurface(cage);
+  std::vector<Location> at;
+  for (int i = 0; i < 20; ++i) at += places(cage);
+  const FixedSamples samples(surface, at, Derivatives::first);
+  const Evaluation expected = samples.evaluate(cage.positions);
+  for (const int passes : {0, 1, 3}) {
+    int left = passes;
+    {
+      const InterruptionPoint point([&] {
+        if (left-- == 0) throw Interrupted();
+      });
+      EXPECT_THROW(samples.evaluate(2 * cage.positions, 1), Interrupted) << passes;
+    }
+    const Evaluation got = samples.evaluate(cage.positions);
+    EXPECT_TRUE(sameBits(got.position, expected.position));
+    EXPECT_TRUE(sameBits(got.du, expected.du));
   }
 }
 

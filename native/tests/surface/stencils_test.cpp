@@ -11,19 +11,9 @@
 namespace limitsurf::test {
 namespace {
 
-/// Locations of every kind: anywhere on every face, near its corners and at them.
 std::vector<Location> places(const Cage& cage) {
   Random random(3);
-  std::vector<Location> at;
-  const int faces = static_cast<int>(ptexFaces(cage).size());
-  for (int face = 0; face < faces; ++face) {
-    at += anywhere(face, 3, random);
-    for (int corner = 0; corner < 4; ++corner) {
-      at.push_back(cornerLocation(face, corner));
-      at += shells(face, corner, {1, 4, 9, 30});
-    }
-  }
-  return at;
+  return everywhere(cage, {1, 4, 9, 30}, 3, random);
 }
 
 std::vector<Cage> someCages() {

@@ -72,16 +72,16 @@ struct SingleRun {
 
 /// Locations each of which is a sum of control points with weights of its own (FixedSamples).
 ///
-/// Entry j of location i, which begins at entry e = offsets[i], is the point indices[e + j]. The
-/// first one is the location's anchor, relative to which the sums are taken, so that it needs no
-/// weights. Those of the others are found at weights + kinds (e + j - i - 1), where kinds is 1, or
-/// 3 for position, du and dv.
+/// Location i of the run begins at entry e = offsets[i], and its entry j is the point
+/// indices[e + j]. Entry 0 is the location's anchor, relative to which the sums are taken, so that
+/// it needs no weights. Those of the others are found at
+/// weights + kinds (e + j - (first + i) - 1), where kinds is 1, or 3 for position, du and dv.
 struct WeightedRun {
   const double (*points)[4];
   const std::size_t* offsets;  ///< count + 1 of them
   const int* indices;
   const double* weights;
-  std::size_t first;        ///< the number of the run's first location, which counts as i
+  std::size_t first;        ///< how many locations come before the run
   const std::size_t* rows;  ///< the rows that get the results
   std::size_t count;
 };

@@ -13,7 +13,7 @@
 namespace limitsurf {
 namespace {
 
-/// The weights of a row take as long as many evaluations.
+/// The weights of a row take as long as many evaluations, so that a task has few rows.
 constexpr std::size_t kRowsPerBlock = 64;
 
 bool isSingle(const TileTable& table, const TileLocation& at) {

@@ -11,8 +11,8 @@
 
 namespace limitsurf {
 
-/// What is known of locations that stay while the mesh deforms. Each is in one of three lists, in
-/// the order of the rows.
+/// What is known of locations that stay while the mesh deforms. Each is in one of three lists,
+/// whose rows are in order; but of each 64 rows, those with weights are sorted by their number.
 struct FixedRows {
   using Row = std::uint32_t;
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -25,25 +26,31 @@ constexpr std::size_t kRowsPerRun = 64;
 
 using PaddedPoints = LargePageVector<Padded>;
 
-/// Memory for the padded control points of one call, kept for the next one: to get it from the
-/// system takes as long as to fill it.
-class PointMemory {
- public:
-  PointMemory() = default;
-  PointMemory(const PointMemory&) = delete;
-  PointMemory& operator=(const PointMemory&) = delete;
-  ~PointMemory() { delete kept_.load(); }
+/// What one call works with.
+struct Working {
+  PaddedPoints points;
+  std::optional<Pose> pose;  // of what posed rows need
+};
 
-  std::unique_ptr<PaddedPoints> take() const {
-    std::unique_ptr<PaddedPoints> points(kept_.exchange(nullptr));
-    return points ? std::move(points) : std::make_unique<PaddedPoints>();
+/// Keeps what a call worked with for the next one: to get the memory from the system takes as long
+/// as to fill it. Calls that run at the same time do not share it.
+class KeptWorking {
+ public:
+  KeptWorking() = default;
+  KeptWorking(const KeptWorking&) = delete;
+  KeptWorking& operator=(const KeptWorking&) = delete;
+  ~KeptWorking() { delete kept_.load(); }
+
+  std::unique_ptr<Working> take() const {
+    std::unique_ptr<Working> working(kept_.exchange(nullptr));
+    return working ? std::move(working) : std::make_unique<Working>();
   }
-  void giveBack(std::unique_ptr<PaddedPoints> points) const {
-    delete kept_.exchange(points.release());
+  void giveBack(std::unique_ptr<Working> working) const {
+    delete kept_.exchange(working.release());
   }
 
  private:
-  mutable std::atomic<PaddedPoints*> kept_{nullptr};
+  mutable std::atomic<Working*> kept_{nullptr};
 };
 
 void setPadded(const RowsIn<Points>& from, PaddedPoints& to, int threads) {
@@ -87,15 +94,15 @@ struct FixedSamples::Data {
   void evaluateWeighted(const PaddedPoints& points, const PatchResults<Real>& results,
                         int threads) const;
   template <typename Real>
-  void evaluatePosed(const RowsIn<Points>& cage, const PatchResults<Real>& results,
-                     int threads) const;
+  void evaluatePosed(const RowsIn<Points>& cage, std::optional<Pose>& pose,
+                     const PatchResults<Real>& results, int threads) const;
 
   std::shared_ptr<const TiledSurface> tiles;
   std::size_t size;
   Derivatives derivatives;
   FixedRows rows;
   PosePart part;  // what rows.posed need
-  PointMemory memory;
+  KeptWorking kept;
 };
 
 template <typename Real>
@@ -134,16 +141,18 @@ void FixedSamples::Data::evaluateWeighted(const PaddedPoints& points,
 }
 
 template <typename Real>
-void FixedSamples::Data::evaluatePosed(const RowsIn<Points>& cage,
+void FixedSamples::Data::evaluatePosed(const RowsIn<Points>& cage, std::optional<Pose>& pose,
                                        const PatchResults<Real>& results, int threads) const {
   const FixedRows::Posed& posed = rows.posed;
   if (posed.rows.empty()) {
     return;
   }
-  Pose pose(tiles->table, &part);
-  pose.set(cage, threads);
+  if (!pose) {
+    pose.emplace(tiles->table, &part);
+  }
+  pose->set(cage, threads);
   parallelFor(posed.rows.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    TileEvaluator evaluator(tiles->table, pose);
+    TileEvaluator evaluator(tiles->table, *pose);
     Jet jet;
     for (std::size_t i = begin; i < end; ++i) {
       evaluator.evaluateUpTo(static_cast<int>(derivatives), posed.at[i], jet);
@@ -212,12 +221,12 @@ void FixedSamples::evaluate(const RowsIn<Points>& control_points,
   into.position = of("position", results.position, true);
   into.du = of("du", results.du, first);
   into.dv = of("dv", results.dv, first);
-  std::unique_ptr<PaddedPoints> points = data_->memory.take();
-  setPadded(control_points, *points, threads);
-  data_->evaluateSingle(*points, into, threads);
-  data_->evaluateWeighted(*points, into, threads);
-  data_->evaluatePosed(control_points, into, threads);
-  data_->memory.giveBack(std::move(points));
+  std::unique_ptr<Working> working = data_->kept.take();
+  setPadded(control_points, working->points, threads);
+  data_->evaluateSingle(working->points, into, threads);
+  data_->evaluateWeighted(working->points, into, threads);
+  data_->evaluatePosed(control_points, working->pose, into, threads);
+  data_->kept.giveBack(std::move(working));
 }
 
 template void FixedSamples::evaluate(const RowsIn<Points>&, const EvaluationArrays<double>&,
