@@ -61,7 +61,7 @@ with and without derivatives may differ in their last bits.
 
 Raises MeshError as set_positions() does. Cost: O(vertices), and 10 to 35 nanoseconds a location on one
 thread. If a location depends on more than 64 vertices, a call also looks at each irregular face, which
-takes about a nanosecond.
+takes about two nanoseconds.
 )";
 
 template <typename Real>

@@ -62,7 +62,7 @@ class FixedSamples {
   /// std::invalid_argument for arrays of other sizes; nothing is written then. Where a call is
   /// interrupted, some rows are written. Cost: O(vertices), and a sum of the vertices that a sample
   /// depends on, 10 to 35 ns on one thread. If a sample depends on more than kMostWeights vertices,
-  /// a call also looks at each irregular face, which takes about a nanosecond.
+  /// a call also looks at each irregular face, which takes about two nanoseconds.
   template <typename Real>
   void evaluate(const RowsIn<Points>& control_points, const EvaluationArrays<Real>& results,
                 int threads = 0) const;
