@@ -62,6 +62,9 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
               interruption.emplace();
             }
             callFor(some.begin(), some.end());
+            if (interruption) {
+              interruption->end();
+            }
           },
           tbb::simple_partitioner());
     };

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tbb/task.h>
-#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <chrono>
 #include <exception>
+#include <memory>
 #include <optional>
 
 #include "limitsurf/interruption_point.h"
@@ -29,48 +28,36 @@ inline void endWithLoop() {
 ///
 /// The caller's own interruption point belongs to the caller, who may have nothing left to do but
 /// to wait for this thread, as long as its task takes. A waiting thread of TBB takes up small tasks
-/// of others. So this one leaves tasks to be taken from time to time, which pass the interruption
-/// point of whoever takes them. What that throws, this thread throws in turn, and so ends the loop.
+/// of others. So this one leaves questions to be taken from time to time: tasks that pass the
+/// interruption point of whoever takes them. What that throws, this thread throws in turn, and so
+/// ends the loop.
+///
+/// Nobody waits for a question to be answered before the task ends. Whoever waits in TBB takes up
+/// other tasks, a question among them, perhaps one of its own: to wait within a question could be
+/// to wait for oneself.
 class WorkerInterruption {
  public:
-  WorkerInterruption() : point_([this] { pass(); }) {}
-  ~WorkerInterruption() {
-    try {
-      settle();
-    } catch (...) {  // NOLINT(bugprone-empty-catch): a destructor throws nothing
-      // The task is done, or ends with an exception of its own; the caller will be asked again.
-    }
-  }
+  WorkerInterruption();
+  /// Waits until nobody has a question of this thread any more.
+  ~WorkerInterruption();
+  WorkerInterruption(const WorkerInterruption&) = delete;
+  WorkerInterruption& operator=(const WorkerInterruption&) = delete;
+
+  /// The same, and throws what an interruption point threw after the last pass of this one. Is
+  /// called once, at the end of the task.
+  void end();
 
  private:
+  class Questions;
   using Clock = std::chrono::steady_clock;
   /// As often as the caller looks for signals.
   static constexpr std::chrono::milliseconds kBetween{20};
 
-  void pass() {
-    endWithLoop();
-    if (Clock::now() < next_) {
-      return;
-    }
-    next_ = Clock::now() + kBetween;
-    settle();
-    left_.emplace();
-    for (int i = 0; i < tbb::this_task_arena::max_concurrency(); ++i) {  // others may take some
-      left_->run([] { InterruptionPoint::pass(); });
-    }
-  }
+  void pass();
 
-  /// Ends the tasks that were left. This thread takes them up itself if nobody has.
-  void settle() {
-    if (left_) {
-      left_->wait();
-      left_.reset();
-    }
-  }
-
-  std::optional<tbb::task_group> left_;
+  std::unique_ptr<Questions> questions_;  // none before the first is left: most tasks are short
   Clock::time_point next_ = Clock::now() + kBetween;
-  const InterruptionPoint point_;
+  std::optional<InterruptionPoint> point_;
 };
 
 }  // namespace limitsurf

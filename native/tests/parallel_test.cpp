@@ -6,8 +6,10 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <future>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace limitsurf {
@@ -142,6 +144,90 @@ TEST(ParallelFor, AnInterruptionPointIsPassedWhileTheCallerWaits) {
     });
     EXPECT_TRUE(endsLongRange(threads, [] {})) << threads;
   }
+}
+
+/// Whether a call on another thread returns. If it does not, that thread is left to itself.
+bool returns(const std::function<void()>& call) {
+  constexpr std::chrono::seconds kLimit{120};
+  std::packaged_task<void()> task(call);
+  std::future<void> end = task.get_future();
+  std::thread(std::move(task)).detach();
+  if (end.wait_for(kLimit) != std::future_status::ready) {
+    return false;
+  }
+  end.get();
+  return true;
+}
+
+/// Longer than the time after which a worker thread asks the caller again.
+constexpr std::chrono::milliseconds kLong{30};
+
+/// A thread that is kept from running between its last two passes finds its own questions at the
+/// end, long after it has left them.
+TEST(WorkerInterruption, AnswersItsOwnQuestionsHoweverLate) {
+  EXPECT_TRUE(returns([] {
+    tbb::task_arena(1).execute([] {
+      const WorkerInterruption interruption;
+      for (int i = 0; i < 3; ++i) {
+        std::this_thread::sleep_for(kLong);
+        InterruptionPoint::pass();
+      }
+      std::this_thread::sleep_for(kLong);
+    });
+  }));
+}
+
+/// Threads that wait at the end of an inner loop take up tasks of the outer one, and questions.
+TEST(WorkerInterruption, LoopsWithinLoopsEndHoweverLongTheirRangesAre) {
+  EXPECT_TRUE(returns([] {
+    for (const int threads : {0, 3}) {
+      std::atomic<int> passes{0}, ranges{0};
+      const InterruptionPoint point([&] { ++passes; });
+      const auto range = [&ranges](std::size_t begin, std::size_t) {
+        for (std::size_t i = 0; i < 1 + begin % 3; ++i) {
+          std::this_thread::sleep_for(kLong / 2);
+          InterruptionPoint::pass();
+        }
+        ++ranges;
+      };
+      parallelFor(6, 1, threads, [&](std::size_t, std::size_t) { parallelFor(5, 1, 0, range); });
+      EXPECT_EQ(ranges, 30) << threads;
+      EXPECT_GT(passes, 0) << threads;
+    }
+  }));
+}
+
+/// What the caller's interruption point throws, it throws once: a signal is told once.
+TEST(WorkerInterruption, NothingThatIsThrownIsLostAtTheEndOfATask) {
+  if (tbb::this_task_arena::max_concurrency() < 2) {
+    GTEST_SKIP() << "one core";
+  }
+  EXPECT_TRUE(returns([] {
+    for (int run = 0; run < 20; ++run) {
+      const std::thread::id caller = std::this_thread::get_id();
+      std::atomic<bool> begun{false}, is_told{false};
+      int calls = 0;
+      const InterruptionPoint point([&] {
+        if (++calls == 2) {  // the caller has passed after its own range, and waits
+          is_told = true;
+          throw std::runtime_error("enough");
+        }
+      });
+      const auto range = [&](std::size_t, std::size_t) {
+        if (std::this_thread::get_id() == caller) {
+          while (!begun) {
+            std::this_thread::yield();
+          }
+          return;
+        }
+        begun = true;
+        while (!is_told) {
+          InterruptionPoint::pass();
+        }
+      };
+      EXPECT_THROW(parallelFor(2, 1, 2, range), std::runtime_error) << run;
+    }
+  }));
 }
 
 }  // namespace
