@@ -2,13 +2,13 @@
 """The cost of hair that follows a deforming surface: each way of following is compared with
 Blender's own node *Deform Curves on Surface*. Prints a table in Markdown.
 
-    .venv/bin/python tools/bench_follow.py [COUNT ...] [--level N] [--catmull-rom]
+    .venv/bin/python tools/bench_follow.py [COUNT ...] [--level N] [--catmull-rom] [--triangles]
 
 Each row has a file of its own: an open, wavy mesh of about 10,000 faces with holes, bent by a shape
-key, and so many strands of 8 points. The mesh is subdivided for display up to level N, by default
-0. Strands are polylines, or Catmull-Rom curves as the extension makes them: Blender evaluates those
-between their points in each frame. Times are of the processor, over all cores: the smallest of
-several frames, and for binding one call.
+key, and so many strands of 8 points. With --triangles its faces are triangles. The mesh is
+subdivided for display up to level N, by default 0. Strands are polylines, or Catmull-Rom curves as
+the extension makes them: Blender evaluates those between their points in each frame. Times are of
+the processor, over all cores: the smallest of several frames, and for binding one call.
 """
 
 import argparse
@@ -29,6 +29,7 @@ from limit_surface.reading import attributes  # noqa: E402
 
 COUNTS = (10_000, 100_000, 1_000_000)
 SIDE, POINTS = 100, 8
+TRIANGLE_SIDE = 71  # two triangles for each quad
 FRAMES = 8
 
 
@@ -37,12 +38,13 @@ def main() -> None:
     parser.add_argument("counts", nargs="*", type=int, default=COUNTS, metavar="COUNT")
     parser.add_argument("--level", type=int, default=0, metavar="N")
     parser.add_argument("--catmull-rom", action="store_true")
+    parser.add_argument("--triangles", action="store_true")
     options = parser.parse_args()
     print("| roots | followed by | bind, s | ms a frame | bytes a root in the file |")
     print("|---:|---|---:|---:|---:|")
     for count in options.counts:
         for name, bind in WAYS.items():
-            hair = add_hair(count, options.level, options.catmull_rom)
+            hair = add_hair(count, options.level, options.catmull_rom, options.triangles)
             before = file_size()
             begin = time.process_time()
             bind(hair)
@@ -54,9 +56,13 @@ def main() -> None:
             )
 
 
-def add_hair(count: int, level: int, is_smooth: bool) -> bpy.types.Object:
+def add_hair(
+    count: int, level: int, is_smooth: bool, are_triangles: bool = False
+) -> bpy.types.Object:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    ob = truth.add_sheet(SIDE)
+    ob = truth.add_sheet(TRIANGLE_SIDE if are_triangles else SIDE)
+    if are_triangles:
+        triangulate(ob.data)
     positions = attributes.read(ob.data, "position")
     uv = ob.data.uv_layers.new(name="Flat").data
     corners = positions[attributes.read(ob.data, ".corner_vert")]
@@ -77,6 +83,16 @@ def add_hair(count: int, level: int, is_smooth: bool) -> bpy.types.Object:
     if not is_smooth:
         hair.data.set_types(type="POLY")
     return hair
+
+
+def triangulate(mesh: bpy.types.Mesh) -> None:
+    import bmesh  # there is none before bpy was imported
+
+    work = bmesh.new()
+    work.from_mesh(mesh)
+    bmesh.ops.triangulate(work, faces=work.faces[:])
+    work.to_mesh(mesh)
+    work.free()
 
 
 def frame_time() -> float:

@@ -68,6 +68,20 @@ def test_a_frame_depends_on_nothing_but_itself():
     assert len({tuple(bits) for bits in forwards.values()}) == 12
 
 
+def test_irregular_faces_are_followed_without_posing_the_surface():
+    ob = deforming("mixed polygons")
+    hair, points = scenes.add_hair(ob, follow="NONE"), scenes.add_points(ob, follow="NONE")
+    follow(hair, points)
+    bpy.context.scene.frame_set(2)
+    kept = live_kept.known(ob)
+    before = kept.limit.positions
+    for frame in (9, 20, 30):
+        bpy.context.scene.frame_set(frame)
+        check_hair(ob, hair)
+        assert np.abs(kept.pose.positions - before).max() > 0.01
+        np.testing.assert_array_equal(kept.limit.positions, before)
+
+
 def test_the_bounding_box_follows():
     ob = deforming("cross")
     hair, points = scenes.add_hair(ob, follow="NONE"), scenes.add_points(ob, follow="NONE")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +20,16 @@ inline void checkRows(const char* what, Eigen::Index rows, Eigen::Index expected
     }
     throw std::invalid_argument(text);
   }
+}
+
+/// The caller's memory for rows of numbers (EvaluationArrays::Rows), or none if they are not
+/// wanted.
+template <typename Rows>
+auto* checkedNumbers(const char* what, const Rows& rows, std::size_t expected, bool are_wanted) {
+  if (are_wanted) {
+    checkRows(what, static_cast<Eigen::Index>(rows.count), static_cast<Eigen::Index>(expected));
+  }
+  return are_wanted ? rows.numbers : nullptr;
 }
 
 }  // namespace limitsurf

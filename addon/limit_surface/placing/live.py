@@ -261,7 +261,7 @@ def _pose(
         live_source.check(ob, surface, on.source, on.signature)
         check_sharers(ob, surface, depsgraph)
         thing = kept.thing(ob)
-        if thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame):
+        if thing.pose(ob.data, on.posed(), _matrix(ob, surface, depsgraph), frame):
             moved.add(ob.data)
             kept.count_move()
         thing.version, thing.surface_pose = on.version, on.pose

@@ -6,21 +6,14 @@ the one that the surface carries to where the points are, in the pose for which 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
 from ..errors import RefusalError
 from . import live_attributes
-from .live_surface import LiveSurface, surface_at
+from .live_surface import LiveSurface, PosedSurface, surface_at
 from .live_thing import LiveThing
-
-if TYPE_CHECKING:
-    import limitsurf
-
-    Pose = AbstractContextManager[limitsurf.LimitSurface]
 
 #: What single precision adds to positions that were posed, in units of the largest coordinate
 _ROUNDING = 1e-6
@@ -54,23 +47,22 @@ class Edits:
             return
         written, on = live_attributes.written(self._ob.data), self._on
         if written is None:
-            self._take_up(on.limit, matrix())
+            self._take_up(on.posed(), matrix())
         elif self._thing.version == on.version:
-            self._take_up(on.limit, written.matrix)
+            self._take_up(on.posed(), written.matrix)
         else:
-            with self._pose_of(written, surface, depsgraph)() as limit:
-                self._take_up(limit, written.matrix)
+            self._take_up(self._pose_of(written, surface, depsgraph), written.matrix)
 
-    def _take_up(self, limit: limitsurf.LimitSurface, matrix: np.ndarray) -> None:
+    def _take_up(self, posed: PosedSurface, matrix: np.ndarray) -> None:
         assert self._edited is not None
-        self._thing.take_up(self._ob.data, self._edited, limit, matrix)
+        self._thing.take_up(self._ob.data, self._edited, posed, matrix)
 
     def _pose_of(
         self,
         written: live_attributes.Written,
         surface: bpy.types.Object,
         depsgraph: bpy.types.Depsgraph,
-    ) -> Callable[[], Pose]:
+    ) -> PosedSurface:
         """Returns the pose that fits the points which were not edited."""
         best, least = None, np.inf
         for pose, is_sure in self._poses(written, surface, depsgraph):
@@ -91,25 +83,23 @@ class Edits:
         written: live_attributes.Written,
         surface: bpy.types.Object,
         depsgraph: bpy.types.Depsgraph,
-    ) -> Iterator[tuple[Callable[[], Pose], bool]]:
+    ) -> Iterator[tuple[PosedSurface, bool]]:
         """Yields poses in which the points may have been written, and whether each of them would
         be believed without further evidence.
         """
         on, earlier = self._on, self._thing.surface_pose
         if earlier is not None and earlier.frame == written.frame and on.had(earlier):
-            yield lambda: on.posed_as(earlier), True
+            yield on.posed(earlier), True
         is_same_frame = on.pose.frame == written.frame
         if not is_same_frame and self._is_of_frame(written.frame):
-            other = surface_at(surface, depsgraph, written.frame)
-            yield lambda: nullcontext(other), True
-        yield lambda: nullcontext(on.limit), is_same_frame
+            yield surface_at(surface, depsgraph, written.frame), True
+        yield on.posed(), is_same_frame
 
     def _is_of_frame(self, frame: float) -> bool:
         """Tells whether all that follows live and deforms the surface is still as in this frame."""
         others = [live_attributes.written(data) for data in self._needed()]
         return all(other is None or other.frame == frame for other in others)
 
-    def _misfit(self, pose: Callable[[], Pose], matrix: np.ndarray) -> float:
+    def _misfit(self, posed: PosedSurface, matrix: np.ndarray) -> float:
         assert self._edited is not None
-        with pose() as limit:
-            return self._thing.misfit(self._ob.data, self._edited, limit, matrix)
+        return self._thing.misfit(self._ob.data, self._edited, posed, matrix)

@@ -8,8 +8,7 @@ attribute. Otherwise the control mesh is read anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
@@ -44,16 +43,32 @@ class SurfacePose(NamedTuple):
     checksums: tuple[object, ...] | None  # without them it cannot be told what it belongs to
 
 
+class PosedSurface(NamedTuple):
+    """A limit surface, and the control points of the pose that is meant. That of the surface itself
+    may be another one: to set it takes long on meshes with many irregular faces.
+    """
+
+    limit: limitsurf.LimitSurface
+    positions: np.ndarray  # (vertices of the control mesh, 3) float64
+    is_lasting: bool  # the surface has been the same in an earlier frame
+
+    def set_pose(self) -> None:
+        """Gives the surface itself this pose."""
+        if not np.array_equal(self.limit.positions, self.positions):
+            self.limit.set_positions(self.positions)
+
+
 class LiveSurface:
     """`version` counts the poses. Raises CageError and MeshError where there is no surface."""
 
-    limit: limitsurf.LimitSurface  # there is one once it has been read
-    pose: SurfacePose  # that of the limit surface
+    limit: limitsurf.LimitSurface  # there is one once it has been read; its pose may be another one
+    pose: SurfacePose  # the one that was read last
     signature: str  # of the faces and rules of the limit surface
     source: str  # what these faces come from
 
     def __init__(self) -> None:
         self.version = 0
+        self._is_lasting = False  # the limit surface is that of an earlier pose
         self._is_behind = True  # something has moved since the pose was read, or there is none yet
         self._checksums: tuple[object, ...] | None = None
         self._faces: tuple[int, int, int] | None = None  # what tells the mesh's faces from others
@@ -88,14 +103,9 @@ class LiveSurface:
             return False
         return pose.checksums == self._checksums
 
-    @contextmanager
-    def posed_as(self, pose: SurfacePose) -> Iterator[limitsurf.LimitSurface]:
-        """Gives the surface an earlier pose for as long as the context lasts."""
-        self.limit.set_positions(pose.positions)
-        try:
-            yield self.limit
-        finally:
-            self.limit.set_positions(self.pose.positions)
+    def posed(self, pose: SurfacePose | None = None) -> PosedSurface:
+        """Returns the surface in its present pose, or in an earlier one."""
+        return PosedSurface(self.limit, (pose or self.pose).positions, self._is_lasting)
 
     def _take(
         self,
@@ -117,6 +127,7 @@ class LiveSurface:
             if not self._is_behind and self.pose.frame == frame:
                 return  # it was read for this frame before the exporter began
         self.version += 1
+        self._is_lasting = not is_other
         if is_other:
             self._checksums = None
             # without the modifier the surface is read after each update
@@ -129,7 +140,6 @@ class LiveSurface:
             return
         if len(captured.positions) != len(self.limit.positions):
             raise CageError(_other_in_renders(ob))
-        self.limit.set_positions(captured.positions)
         self._checksums = captured.checksums
         self.pose = SurfacePose(frame, captured.positions, captured.checksums)
 
@@ -141,12 +151,11 @@ def _other_in_renders(ob: bpy.types.Object) -> str:
     )
 
 
-def surface_at(
-    ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, frame: float
-) -> limitsurf.LimitSurface:
+def surface_at(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, frame: float) -> PosedSurface:
     """Returns the limit surface of another frame."""
     with cage.opened(ob, depsgraph, _at(frame)) as (found, _):
-        return found.surface()
+        limit = found.surface()
+        return PosedSurface(limit, limit.positions, is_lasting=False)
 
 
 def _at(frame: float) -> Callable[[bpy.types.Object, bpy.types.Scene], None]:

@@ -37,11 +37,16 @@ from .live_attributes import (
     tag,
     write,
 )
-from .live_surface import SurfacePose
+from .live_surface import PosedSurface, SurfacePose
 from .places import NOWHERE, ROOT_KINDS, Places
 
 if TYPE_CHECKING:
     import limitsurf
+
+#: Up to so many strands, roots on irregular faces are prepared in the second frame if they are more
+#: than a tenth of all. Frames then need no posed surface, and take a quarter of the time. With more
+#: strands, the preparation would stop the artist for half a second on two cores.
+_MOST_PREPARED = 100_000
 
 
 def start(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
@@ -76,6 +81,7 @@ class LiveThing:
         self._limit: limitsurf.LimitSurface | None = None
         self._binding: dict[str, np.ndarray] = {}
         self._poser: limitsurf.StrandPoser | None = None
+        self._is_irregular = False  # it pays to prepare the poser for control points
         self._corners: _Corners | None = None
         self._buffers: dict[str, np.ndarray] = {}
         self._is_current = False  # points were read since the last pose
@@ -107,20 +113,20 @@ class LiveThing:
         self,
         data: bpy.types.ID,
         edited: np.ndarray,
-        limit: limitsurf.LimitSurface,
+        posed: PosedSurface,
         matrix: np.ndarray,
     ) -> float:
         """Returns how far strands that nobody has edited are from where the surface in its pose
         carries them, in units of the largest coordinate: about 0 if it is the pose for which they
         were written. It is NaN where that cannot be told, because all were edited.
         """
-        poser = self._poser_on(data, limit)
+        poser, positions = self._poser_on(data, posed.limit), self._positions_of(posed)
         worst, largest = np.nan, 0.0
         for name in points_of(data):
             points, rows = self._read(data, name), ~rows_of(data, name, edited)
             if rows.any():
-                off = poser.pose(self._at_rest(data, name), matrix)[rows] - points[rows]
-                worst = np.fmax(worst, np.abs(off).max())
+                now = poser.pose(self._at_rest(data, name), matrix, positions=positions)
+                worst = np.fmax(worst, np.abs(now[rows] - points[rows]).max())
                 largest = max(largest, float(np.abs(points[rows]).max()))
         return float(worst / (largest or 1.0))
 
@@ -128,16 +134,16 @@ class LiveThing:
         self,
         data: bpy.types.ID,
         edited: np.ndarray,
-        limit: limitsurf.LimitSurface,
+        posed: PosedSurface,
         matrix: np.ndarray,
     ) -> None:
         """Changes the shape at rest of edited strands, so that they are posed to where they are
         now, on the surface in the pose for which they were written. New ones are at rest there.
         """
-        poser = self._poser_on(data, limit)
+        poser, positions = self._poser_on(data, posed.limit), self._positions_of(posed)
         for name in points_of(data):
             rest = self._at_rest(data, name)
-            poser.unpose(self._read(data, name), matrix, rest, only=edited)
+            poser.unpose(self._read(data, name), matrix, rest, only=edited, positions=positions)
             write(data, rest_name(name), rest)
         is_new = edited & (self._prints == 0)
         if is_new.any():
@@ -172,23 +178,22 @@ class LiveThing:
         write(data, ids.LIVE_FINGERPRINT, self._prints)
 
     def pose(
-        self, data: bpy.types.ID, limit: limitsurf.LimitSurface, matrix: np.ndarray, frame: float
+        self, data: bpy.types.ID, posed: PosedSurface, matrix: np.ndarray, frame: float
     ) -> bool:
-        """Moves everything to where it is on the surface in its pose, and returns whether anything
-        changed.
-        """
-        is_current = self._is_current and limit is self._limit
+        """Moves everything to where it is on the surface, and returns whether anything changed."""
+        is_current = self._is_current and posed.limit is self._limit
         if not is_current:
-            self._poser_on(data, limit)
+            self._poser_on(data, posed.limit)
         self._is_current = False
         poser = self._poser
         assert poser is not None
-        has_moved = self._pose_vectors(data, poser, matrix)
+        positions = self._positions_of(posed)
+        has_moved = self._pose_vectors(data, poser, matrix, positions)
         prints = np.zeros(len(poser), np.int32)
         for name in points_of(data):
             points = self._buffers[name] if is_current else self._read(data, name)
             rest = self._at_rest(data, name)
-            has_changed, own = poser.repose(rest, points, matrix)
+            has_changed, own = poser.repose(rest, points, matrix, positions=positions)
             prints ^= own
             if has_changed:
                 write(data, name, points)
@@ -199,8 +204,21 @@ class LiveThing:
         note_written(data, frame, matrix)
         return has_moved
 
+    def _positions_of(self, posed: PosedSurface) -> np.ndarray | None:
+        """Returns what the poser's calls need to know of the pose: the control points, or None if
+        the surface itself has the pose.
+        """
+        if self._is_irregular and posed.is_lasting:
+            return posed.positions
+        posed.set_pose()
+        return None
+
     def _pose_vectors(
-        self, data: bpy.types.ID, poser: limitsurf.StrandPoser, matrix: np.ndarray
+        self,
+        data: bpy.types.ID,
+        poser: limitsurf.StrandPoser,
+        matrix: np.ndarray,
+        positions: np.ndarray | None,
     ) -> bool:
         """Turns normals, tangents and rotations, and returns whether anything changed."""
         how: dict[str, Callable[..., np.ndarray]] = {ids.ROTATION: poser.pose_rotations}
@@ -213,7 +231,8 @@ class LiveThing:
             if name not in how or rest_name(name) not in there:
                 continue  # it was added later
             rest = self._at_rest(data, name)
-            posed = how[name](rest, matrix, self._buffer(f"new {name}", rest.shape))
+            out = self._buffer(f"new {name}", rest.shape)
+            posed = how[name](rest, matrix, out, positions=positions)
             if not _same_bits(posed, self._read(data, name)):
                 write(data, name, posed)
                 has_moved = True
@@ -247,6 +266,8 @@ class LiveThing:
             or not all(_same_bits(binding[key], kept) for key, kept in self._binding.items())
         ):
             self._poser = _poser(limit, binding, binding.get("offsets"))
+            irregular = self._poser.irregular_count
+            self._is_irregular = len(self._poser) / 10 < irregular <= _MOST_PREPARED
             self._limit, self._binding, self._corners = limit, binding, None
         self._source = _source(data)
         return self._poser
@@ -297,8 +318,16 @@ class _Corners:
         count = np.bincount(vertex, minlength=len(binding[ids.FACE]))
         self._poser = _poser(limit, binding, np.concatenate([[0], np.cumsum(count)]))
 
-    def pose_vectors(self, rest: np.ndarray, matrix: np.ndarray, out: np.ndarray) -> np.ndarray:
-        out[self._order] = self._poser.pose_vectors(rest[self._order], matrix)
+    def pose_vectors(
+        self,
+        rest: np.ndarray,
+        matrix: np.ndarray,
+        out: np.ndarray,
+        *,
+        positions: np.ndarray | None,
+    ) -> np.ndarray:
+        in_order = rest[self._order]
+        out[self._order] = self._poser.pose_vectors(in_order, matrix, positions=positions)
         return out
 
 

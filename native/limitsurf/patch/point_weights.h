@@ -25,7 +25,7 @@ class PointWeights {
 
   void clear() {
     entries_.clear();
-    slots_.assign(kLeastSlots, kFree);
+    slots_.assign(kLeastSlots, {kFree, 0});
   }
 
   void add(int point, const Weight& weight) { entries_[find(point)].weight += weight; }
@@ -74,15 +74,20 @@ class PointWeights {
   static constexpr int kFree = -1;
   static constexpr std::size_t kLeastSlots = 128;  // a power of two, as all numbers of slots
 
+  struct Slot {
+    int point;  ///< kFree: none
+    int place;  ///< among the entries
+  };
+
   /// The place of a point among the entries, to which it is added if it is not there.
   std::size_t find(int point) {
     std::size_t slot = slotOf(point);
-    for (; slots_[slot] != kFree; slot = (slot + 1) % slots_.size()) {
-      if (entries_[static_cast<std::size_t>(slots_[slot])].point == point) {
-        return static_cast<std::size_t>(slots_[slot]);
+    for (; slots_[slot].point != kFree; slot = slotAfter(slot)) {
+      if (slots_[slot].point == point) {
+        return static_cast<std::size_t>(slots_[slot].place);
       }
     }
-    slots_[slot] = static_cast<int>(entries_.size());
+    slots_[slot] = {point, static_cast<int>(entries_.size())};
     entries_.push_back({point, zero_});
     if (2 * entries_.size() > slots_.size()) {
       spread();
@@ -95,21 +100,22 @@ class PointWeights {
     const std::uint32_t mixed = static_cast<std::uint32_t>(point) * 2654435769u;
     return (mixed ^ (mixed >> 16)) & (slots_.size() - 1);
   }
+  std::size_t slotAfter(std::size_t slot) const { return (slot + 1) & (slots_.size() - 1); }
 
   void spread() {
-    slots_.assign(2 * slots_.size(), kFree);
+    slots_.assign(2 * slots_.size(), {kFree, 0});
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       std::size_t slot = slotOf(entries_[i].point);
-      while (slots_[slot] != kFree) {
-        slot = (slot + 1) % slots_.size();
+      while (slots_[slot].point != kFree) {
+        slot = slotAfter(slot);
       }
-      slots_[slot] = static_cast<int>(i);
+      slots_[slot] = {entries_[i].point, static_cast<int>(i)};
     }
   }
 
   Weight zero_;
   std::vector<Entry> entries_;
-  std::vector<int> slots_;    // places of entries by their points (open addressing)
+  std::vector<Slot> slots_;   // places of entries by their points (open addressing)
   std::vector<int> refined_;  // points that are to be replaced (a heap)
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -29,6 +30,8 @@ struct BSplineTile {
   std::int8_t crease_side = 0;
   /// Whether the quad is so small that the rounding of its points matters (see TileTable::fine).
   bool fine = false;
+
+  bool hasEnds() const { return x_low | x_high | y_low | y_high; }
 };
 
 /// A quad with an extraordinary vertex at one corner and regular ones at the others.
@@ -77,6 +80,12 @@ struct TileTable {
   /// precision. At smaller depths that factor is 16 at most.
   static constexpr int kFineDepth = 3;
   bool fine = false;
+
+  /// Whether all points of the tile are vertices of the control mesh.
+  bool isOnVertices(const BSplineTile& tile) const {
+    return std::all_of(tile.points.begin(), tile.points.end(),
+                       [this](int point) { return point < points.cagePoints(); });
+  }
 
   /// The deepest split. Sharpness decays within 10 steps, and one or two more separate the
   /// extraordinary vertices of a quad; the rest is room to spare.

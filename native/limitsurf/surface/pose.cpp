@@ -13,7 +13,7 @@ namespace {
 
 /// Tasks take 100 microseconds and more. Small meshes are one task, because waking other cores
 /// would take as long.
-constexpr std::size_t kPointsPerTask = 65536, kRingsPerTask = 256;
+constexpr std::size_t kRingsPerTask = 256;
 
 Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
 
@@ -80,23 +80,6 @@ Pose::Pose(const TileTable& table, const PosePart* part)
 
 namespace {
 
-/// The bounding box of some points.
-struct Box {
-  double low[3], high[3];
-
-  Box() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    std::fill_n(low, 3, kInfinity);
-    std::fill_n(high, 3, -kInfinity);
-  }
-  void include(const double least[3], const double most[3]) {
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], least[c]);
-      high[c] = std::max(high[c], most[c]);
-    }
-  }
-};
-
 /// The largest power of two that is no larger.
 double powerOfTwo(double size) { return size > 0 ? std::ldexp(1, std::ilogb(size)) : 1; }
 
@@ -106,29 +89,8 @@ void Pose::set(const RowsIn<Points>& cage, int threads) {
   is_set_ = false;
   const RefinedPoints& refined = table_->points;
   points_.resize(static_cast<std::size_t>(refined.size()));
-  const auto count = static_cast<std::size_t>(cage.rows());
-  std::vector<Box> parts((count + kPointsPerTask - 1) / kPointsPerTask);
-  parallelFor(count, kPointsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    Box part;
-    for (std::size_t i = begin; i < end; ++i) {
-      const double* const from = cage.data() + 3 * i;
-      double* const to = points_[i].data();
-      to[0] = from[0], to[1] = from[1], to[2] = from[2], to[3] = 0;
-      part.include(from, from);
-    }
-    parts[begin / kPointsPerTask] = part;
-  });
-  Box box;
-  for (const Box& part : parts) {
-    box.include(part.low, part.high);
-  }
-  extent_ = largest_coordinate_ = 0;
-  for (int c = 0; c < 3 && count > 0; ++c) {
-    extent_ = std::max(extent_, box.high[c] - box.low[c]);
-    largest_coordinate_ =
-        std::max({largest_coordinate_, std::abs(box.low[c]), std::abs(box.high[c])});
-  }
-  residual_unit_ = powerOfTwo(largest_coordinate_);
+  size_ = padPoints(cage, points_.data(), threads);
+  residual_unit_ = powerOfTwo(size_.largest_coordinate);
   refinePoints();
   steps_made_.clear();
   const std::size_t rings = part_ ? part_->rings.size() : rings_.size();

@@ -8,6 +8,7 @@
 #include "limitsurf/eigen/tile_grid.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/jet.h"
+#include "limitsurf/surface/padded_points.h"
 #include "limitsurf/surface/steps_made.h"
 #include "limitsurf/types.h"
 
@@ -65,10 +66,8 @@ class Pose {
   void set(const RowsIn<Points>& cage, int threads);
   bool isSet() const { return is_set_; }
 
-  /// The longest side of the bounding box of the control points.
-  double extent() const { return extent_; }
-  /// The largest coordinate of a control point.
-  double largestCoordinate() const { return largest_coordinate_; }
+  /// How large the control points are.
+  const PointsSize& size() const { return size_; }
 
   const Padded& point(int i) const { return points_[i]; }
   /// The rounding error of a point, so that point(i) + residual(i) has 24 bits more. It is 0 unless
@@ -111,7 +110,7 @@ class Pose {
   const TileTable* table_;
   const PosePart* part_;
   bool is_set_ = false;
-  double extent_ = 0, largest_coordinate_ = 0;
+  PointsSize size_;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
   std::vector<std::array<float, 3>> residuals_;  // of the refined points, over residual_unit_

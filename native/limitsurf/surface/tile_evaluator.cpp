@@ -191,16 +191,24 @@ Vector3 TileEvaluator::normalDirection(const TileLocation& at, const Jet& jet) {
 }
 
 NormalLimits TileEvaluator::normalLimits(int steps, int depth) const {
+  return normalLimits(pose_.size(), steps, depth);
+}
+
+NormalLimits TileEvaluator::normalLimits(const PointsSize& points, int steps, int depth) {
   // With n, the rounding of du and dv grows as (2 lambda)^n, which is less than 2^(2n/5 + 1).
   const int growth = steps > kStepsToParallel ? 2 * steps / 5 + 1 : 0;
-  const double size = std::max(pose_.extent(), kOfLargestCoordinate * pose_.largestCoordinate());
+  const double size = std::max(points.extent, kOfLargestCoordinate * points.largest_coordinate);
   const double least = std::ldexp(kFarAboveRounding * size, depth + growth);
   return {steps > kStepsToParallel ? kLowestSineSquare : 0, least * least};
 }
 
 bool TileEvaluator::hasPlainNormal(const TileLocation& at, const Jet& jet) const {
-  const int steps = at.tile.kind == TileRef::kRing ? Quarter(at.u, at.v).steps : 0;
-  return meetsLimits(jet.patch.du.head<3>(), jet.patch.dv.head<3>(), normalLimits(steps, at.depth));
+  return meetsLimits(jet.patch.du.head<3>(), jet.patch.dv.head<3>(), normalLimits(at));
+}
+
+NormalLimits TileEvaluator::normalLimits(const TileLocation& at) const {
+  const bool is_in_quarter = at.tile.kind == TileRef::kRing && !at.atVertex();
+  return normalLimits(is_in_quarter ? Quarter(at.u, at.v).steps : 0, at.depth);
 }
 
 double TileEvaluator::sizeOf(const TileLocation& at) const {
@@ -230,7 +238,7 @@ double TileEvaluator::sizeOf(const TileLocation& at) const {
     }
   }
   if (is_refined) {
-    size = std::max(size, kOfLargestCoordinate * pose_.largestCoordinate());
+    size = std::max(size, kOfLargestCoordinate * pose_.size().largest_coordinate);
   }
   return std::ldexp(size, at.depth);
 }

@@ -52,6 +52,9 @@ class TileEvaluator {
   /// in a quarter of a ring tile after so many steps, or in a regular tile (0), and whose tile is
   /// so many splits below the face.
   NormalLimits normalLimits(int steps, int depth) const;
+  NormalLimits normalLimits(const TileLocation& at) const;
+  /// The same for control points of this size.
+  static NormalLimits normalLimits(const PointsSize& points, int steps, int depth);
 
   /// The forms, for curvature, where the jet was evaluated, with second derivatives.
   ///

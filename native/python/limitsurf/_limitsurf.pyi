@@ -203,6 +203,8 @@ class StrandPoser(metaclass=_BoundType):
     @property
     def bound_count(self) -> int: ...
     @property
+    def irregular_count(self) -> int: ...
+    @property
     def point_count(self) -> int: ...
     def pose(
         self,
@@ -210,6 +212,7 @@ class StrandPoser(metaclass=_BoundType):
         matrix: ArrayLike | None = None,
         out: NDArray[np.float32] | None = None,
         *,
+        positions: ArrayLike | None = None,
         threads: int = 0,
     ) -> NDArray[np.float32]: ...
     def repose(
@@ -218,6 +221,7 @@ class StrandPoser(metaclass=_BoundType):
         points: NDArray[np.float32],
         matrix: ArrayLike | None = None,
         *,
+        positions: ArrayLike | None = None,
         threads: int = 0,
     ) -> tuple[bool, NDArray[np.int32]]: ...
     def unpose(
@@ -227,6 +231,7 @@ class StrandPoser(metaclass=_BoundType):
         out: NDArray[np.float32] | None = None,
         *,
         only: ArrayLike | None = None,
+        positions: ArrayLike | None = None,
         threads: int = 0,
     ) -> NDArray[np.float32]: ...
     def pose_vectors(
@@ -235,6 +240,7 @@ class StrandPoser(metaclass=_BoundType):
         matrix: ArrayLike | None = None,
         out: NDArray[np.float32] | None = None,
         *,
+        positions: ArrayLike | None = None,
         threads: int = 0,
     ) -> NDArray[np.float32]: ...
     def pose_rotations(
@@ -243,6 +249,7 @@ class StrandPoser(metaclass=_BoundType):
         matrix: ArrayLike | None = None,
         out: NDArray[np.float32] | None = None,
         *,
+        positions: ArrayLike | None = None,
         threads: int = 0,
     ) -> NDArray[np.float32]: ...
     def fingerprints(self, points: ArrayLike, *, threads: int = 0) -> NDArray[np.int32]: ...

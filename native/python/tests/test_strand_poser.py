@@ -97,6 +97,41 @@ def test_follow_positions_and_frames(hair, name):
         np.testing.assert_allclose(posed, hair.expected(matrix), rtol=3e-7, atol=3e-7)
 
 
+@pytest.mark.parametrize("name", MATRICES)
+def test_positions_give_what_a_posed_surface_gives(hair, name):
+    matrix, positions = MATRICES[name], hair.cage * [1, 1.5, 1.2]
+    poser, points = hair.poser(), hair.points.copy()
+    posed = poser.pose(hair.points, matrix, positions=positions)
+    has_changed, numbers = poser.repose(hair.points, points, matrix, positions=positions)
+    np.testing.assert_array_equal(points, posed)
+    assert has_changed
+    assert not poser.repose(hair.points, points, matrix, positions=positions)[0]
+    np.testing.assert_array_equal(numbers, poser.fingerprints(posed))
+    back = poser.unpose(posed, matrix, positions=positions)
+    np.testing.assert_allclose(back, hair.points, atol=2e-5)
+    assert 100 < poser.irregular_count <= poser.bound_count  # a house has few regular faces
+    single = hair.poser(offsets=None)
+    vectors = single.pose_vectors(hair.roots, matrix, positions=positions)
+    rotations = single.pose_rotations(hair.rotations, matrix, positions=positions)
+    np.testing.assert_array_equal(hair.surface.positions, hair.cage)
+
+    hair.surface.set_positions(positions)
+    np.testing.assert_allclose(posed, hair.expected(matrix), rtol=3e-7, atol=3e-7)
+    np.testing.assert_allclose(vectors, single.pose_vectors(hair.roots, matrix), atol=1e-6)
+    np.testing.assert_allclose(rotations, single.pose_rotations(hair.rotations, matrix), atol=1e-6)
+
+
+def test_positions_are_checked(hair):
+    poser, before = hair.poser(), hair.points.copy()
+    bad = hair.cage.copy()
+    bad[2, 1] = np.nan
+    with pytest.raises(ls.MeshError, match="vertex 2 .*nan"):
+        poser.repose(hair.points.copy(), hair.points, positions=bad)
+    with pytest.raises(ls.MeshError, match=f"expected .{len(hair.cage)}, 3"):
+        poser.repose(hair.points.copy(), hair.points, positions=hair.cage[1:])
+    np.testing.assert_array_equal(hair.points, before)
+
+
 def test_unpose_is_the_inverse(hair):
     poser = hair.poser()
     posed = poser.pose(hair.points, MATRICES["moved"])
@@ -183,8 +218,11 @@ def test_reposing_moves_points_in_place_and_tells_whether_they_changed(hair):
 def test_the_number_of_threads_gives_the_same_bits():
     hair = Hair(40_000)
     poser = hair.poser()
-    results = {poser.pose(hair.points, threads=n).tobytes() for n in (0, 1, 2)}
-    assert len(results) == 1
+    for positions in (None, hair.cage):
+        results = {
+            poser.pose(hair.points, positions=positions, threads=n).tobytes() for n in (0, 1, 2)
+        }
+        assert len(results) == 1
     numbers = {poser.fingerprints(hair.points, threads=n).tobytes() for n in (0, 1, 2)}
     assert len(numbers) == 1
 
@@ -285,9 +323,10 @@ poser = surface.strand_poser(
 )
 points = np.zeros((count, 3), np.float32)
 ctrl_c.interrupt(lambda: poser.pose(points))
+ctrl_c.interrupt(lambda: poser.pose(points, positions=surface.positions))
 print(surface.evaluate(0, [[0.5, 0.5]]).position.shape)
 """
 
 
 def test_ctrl_c_ends_the_call():
-    assert ctrl_c.output_of(POSING) == ["interrupted", "(1, 3)"]
+    assert ctrl_c.output_of(POSING) == ["interrupted", "interrupted", "(1, 3)"]

@@ -137,14 +137,20 @@ TEST_P(StrandPoserOn, GivesWhatPositionsAndFramesGive) {
   const Golden golden = readGolden(GetParam());
   LimitSurface surface = limitSurface(golden.cage);
   const Strands strands(golden.at, 1);
-  const StrandPoser poser = strands.on(surface);
+  LimitSurface elsewhere = limitSurface(golden.cage);
+  elsewhere.setPositions((golden.cage.positions.array() * 3 + 1).matrix());
+  const StrandPoser poser = strands.on(surface), unposed = strands.on(elsewhere);
   FloatPoints posed(strands.points.rows(), 3);
   const Points bent = perturbed(golden.cage, 0.05 * diagonal(golden.cage.positions), 2).positions;
   for (const Points& positions : {golden.cage.positions, bent}) {
     surface.setPositions(positions);
+    const RowsIn<Points> control_points = positions;
     for (const Eigen::Matrix4d& map : {Eigen::Matrix4d(Eigen::Matrix4d::Identity()),
                                        turnedAndMoved(), stretched(), mirrored()}) {
       poser.pose(strands.points, posed, map);
+      EXPECT_LE(worstError(surface, golden.at, strands, posed, map), 1);
+      posed.setZero();
+      unposed.pose(strands.points, posed, map, 0, &control_points);
       EXPECT_LE(worstError(surface, golden.at, strands, posed, map), 1);
     }
   }
@@ -334,11 +340,110 @@ TEST(StrandPoser, BitsDependOnNothingElseInTheBatch) {
   }
 }
 
+/// What all calls give for one pose: with control points, or for the surface in its pose.
+struct AllCalls {
+  AllCalls(const StrandPoser& poser, const Strands& strands, const Eigen::Matrix4d& map,
+           int threads, const RowsIn<Points>* control_points)
+      : points(strands.points), posed(points), unposed(points), vectors(points) {
+    poser.pose(points, posed, map, threads, control_points);
+    reposed = poser.repose(strands.points, points, map, threads, control_points);
+    poser.unpose(strands.points, unposed, map, {}, threads, control_points);
+    poser.poseVectors(strands.points, vectors, map, threads, control_points);
+    FloatRotations rest = FloatRotations::Ones(points.rows(), 4);
+    rest.leftCols<3>() = strands.points;
+    rotations = rest;
+    poser.poseRotations(rest, rotations, map, threads, control_points);
+  }
+  bool operator==(const AllCalls& other) const {
+    return points == other.points && posed == other.posed && unposed == other.unposed &&
+           vectors == other.vectors && rotations == other.rotations &&
+           reposed.fingerprints == other.reposed.fingerprints;
+  }
+
+  FloatPoints points, posed, unposed, vectors;
+  FloatRotations rotations;
+  StrandPoser::Reposed reposed;
+};
+
+TEST(StrandPoser, ControlPointsGiveWhatASurfaceInThatPoseGives) {
+  const Cage cage = perturbed(gridWithHoles(12, 12, {40, 77}), 0.2, 1);
+  LimitSurface surface = limitSurface(cage);
+  std::vector<Location> at;
+  for (int round = 0; round < 40; ++round) at += locationsOn(cage, 100 + round);
+  const Strands strands(at, 9);
+  const StrandPoser poser = strands.on(surface);
+  const Points positions = perturbed(cage, 0.3, 5).positions;
+  const RowsIn<Points> control_points = positions;
+  const AllCalls found(poser, strands, mirrored(), 1, &control_points);
+  for (const int threads : {2, 3}) {
+    EXPECT_TRUE(AllCalls(poser, strands, mirrored(), threads, &control_points) == found) << threads;
+  }
+  EXPECT_TRUE(found.reposed.has_changed);
+  FloatPoints again = found.points;
+  EXPECT_FALSE(poser.repose(strands.points, again, mirrored(), 0, &control_points).has_changed);
+  EXPECT_EQ(found.points, found.posed);
+  EXPECT_EQ(found.reposed.fingerprints, poser.fingerprints(found.posed));
+
+  surface.setPositions(positions);
+  const AllCalls expected(poser, strands, mirrored(), 0, nullptr);
+  EXPECT_LE((found.posed - expected.posed).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_LE((found.unposed - expected.unposed).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_LE((found.vectors - expected.vectors).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_LE((found.rotations - expected.rotations).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_GT((found.unposed - strands.points).cwiseAbs().maxCoeff(), 0.1);
+}
+
+// Where derivatives vanish or are parallel, frames are completed as those of a surface are.
+TEST(StrandPoser, ControlPointsMayBeFlattened) {
+  const Cage cage = mixture(5);
+  LimitSurface surface = limitSurface(cage);
+  const Strands strands(locationsOn(cage, 1), 2);
+  const StrandPoser poser = strands.on(surface);
+  const Points& before = cage.positions;
+  const Vector3 line(0.3, 0.7, 0.11);
+  for (const Points& positions :
+       {Points(before.col(0) * line.transpose()), Points(Points::Ones(before.rows(), 3)),
+        Points(before * Eigen::Vector3d(1, 1, 1e-9).asDiagonal())}) {
+    const RowsIn<Points> control_points = positions;
+    const AllCalls found(poser, strands, stretched(), 0, &control_points);
+    LimitSurface posed = limitSurface(cage);
+    posed.setPositions(positions);
+    const StrandPoser on_posed = strands.on(posed);
+    const AllCalls expected(on_posed, strands, stretched(), 0, nullptr);
+    EXPECT_LE((found.posed - expected.posed).cwiseAbs().maxCoeff(), 4e-6);
+    EXPECT_LE((found.vectors - expected.vectors).cwiseAbs().maxCoeff(), 4e-6);
+  }
+}
+
+TEST(StrandPoser, ControlPointsAreChecked) {
+  const Cage cage = cross();
+  const LimitSurface surface = limitSurface(cage);
+  const Strands strands(locationsOn(cage, 1), 2);
+  const StrandPoser poser = strands.on(surface);
+  FloatPoints posed = strands.points;
+  Points positions = cage.positions;
+  positions(3, 1) = NAN;
+  const auto refuses = [&](const Points& rows, const std::string& part) {
+    const RowsIn<Points> control_points = rows;
+    try {
+      poser.pose(strands.points, posed, Eigen::Matrix4d::Identity(), 0, &control_points);
+      ADD_FAILURE() << "not refused";
+    } catch (const MeshError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refuses(positions, "3");
+  refuses(cage.positions.topRows(4), "4");
+  EXPECT_EQ(posed, strands.points);
+}
+
 TEST(StrandPoser, EmptyBatches) {
   const LimitSurface surface = limitSurface(cross());
   const StrandPoser nothing(surface, {}, FloatPoints(0, 3), FloatRotations(0, 4));
   FloatPoints none(0, 3);
   nothing.pose(none, none);
+  const RowsIn<Points> control_points = surface.positions();
+  nothing.pose(none, none, Eigen::Matrix4d::Identity(), 0, &control_points);
   EXPECT_EQ(nothing.size(), 0U);
   EXPECT_TRUE(nothing.fingerprints(none).empty());
 

@@ -86,8 +86,7 @@ template <typename Real>
 void BatchEvaluator<Real>::evaluateSingle(TileRef tile, const TileRows& row) {
   if (tile.kind == TileRef::kBSpline) {
     const BSplineTile& regular = table_.bsplines[tile.index];
-    const bool has_ends = regular.x_low | regular.x_high | regular.y_low | regular.y_high;
-    if (!has_ends && !regular.fine && !runs_.hasCrease(tile)) {
+    if (!regular.hasEnds() && !regular.fine && !runs_.hasCrease(tile)) {
       const unsigned i = singles_.count++;
       singles_.tiles[i] = tile;
       singles_.indices[i] = regular.points.data();

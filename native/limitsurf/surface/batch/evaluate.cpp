@@ -95,13 +95,8 @@ template <typename Real>
 void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
                             const EvaluationArrays<Real>& results, int threads) const {
   checkThreads(threads);
-  const auto of = [&](const char* name, const typename EvaluationArrays<Real>::Rows& array,
-                      bool wanted) {
-    if (!wanted) {
-      return static_cast<Real*>(nullptr);
-    }
-    checkRows(name, static_cast<Eigen::Index>(array.count), static_cast<Eigen::Index>(at.size()));
-    return array.numbers;
+  const auto of = [&](const char* name, const auto& rows, bool are_wanted) {
+    return checkedNumbers(name, rows, at.size(), are_wanted);
   };
   const bool first = derivatives >= Derivatives::first, second = derivatives == Derivatives::second;
   const PatchResults<Real> into{of("position", results.position, true),

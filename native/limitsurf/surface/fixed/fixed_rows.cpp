@@ -11,23 +11,13 @@
 #include "limitsurf/surface/stencils/stencil_row.h"
 
 namespace limitsurf {
-namespace {
-
-/// The weights of a row take as long as many evaluations, so that a task has few rows.
-constexpr std::size_t kRowsPerBlock = 64;
-
-bool isSingle(const TileTable& table, const TileLocation& at) {
+bool FixedRows::isSingle(const TileTable& table, const TileLocation& at) {
   if (at.tile.kind != TileRef::kBSpline || at.depth > 0 || at.turns > 0) {
     return false;
   }
   const BSplineTile& tile = table.bsplines[at.tile.index];
-  return !(tile.x_low || tile.x_high || tile.y_low || tile.y_high) && !tile.fine &&
-         tile.crease == 0 && std::all_of(tile.points.begin(), tile.points.end(), [&](int point) {
-           return point < table.points.cagePoints();
-         });
+  return !tile.hasEnds() && !tile.fine && tile.crease == 0 && table.isOnVertices(tile);
 }
-
-}  // namespace
 
 /// Makes some of the rows.
 class FixedRows::Builder {
@@ -106,13 +96,14 @@ class FixedRows::Builder {
   StencilRow weights_;
 };
 
-FixedRows::FixedRows(const LocationBatch& at, const TileEvaluator& evaluator,
-                     const TileTable& table, int order, int threads) {
-  std::vector<FixedRows> blocks((at.size() + kRowsPerBlock - 1) / kRowsPerBlock);
-  parallelFor(at.size(), kRowsPerBlock, threads, [&](std::size_t begin, std::size_t end) {
+FixedRows::FixedRows(const TileTable& table, std::size_t count,
+                     const std::function<TileLocation(std::size_t)>& place, int order,
+                     int threads) {
+  std::vector<FixedRows> blocks((count + kRowsPerBlock - 1) / kRowsPerBlock);
+  parallelFor(count, kRowsPerBlock, threads, [&](std::size_t begin, std::size_t end) {
     Builder builder(table, order, blocks[begin / kRowsPerBlock]);
     for (std::size_t row = begin; row < end; ++row) {
-      builder.add(static_cast<Row>(row), evaluator.locate(at[row]));
+      builder.add(static_cast<Row>(row), place(row));
     }
     builder.finish();
   });

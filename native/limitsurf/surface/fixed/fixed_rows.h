@@ -3,18 +3,21 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "limitsurf/patch/tile_table.h"
-#include "limitsurf/surface/location_batch.h"
 #include "limitsurf/surface/tile_evaluator.h"
 
 namespace limitsurf {
 
 /// What is known of locations that stay while the mesh deforms. Each is in one of three lists,
-/// whose rows are in order; but of each 64 rows, those with weights are sorted by their number.
+/// whose rows are in order; but in each block of rows, those with weights are sorted by their
+/// number.
 struct FixedRows {
   using Row = std::uint32_t;
+  /// The weights of a row take as long as many evaluations, so that a task has few rows.
+  static constexpr std::size_t kRowsPerBlock = 64;
 
   /// Locations on regular tiles that are whole Ptex faces with vertices of the control mesh alone
   /// (SingleRun).
@@ -37,11 +40,15 @@ struct FixedRows {
   };
 
   FixedRows() = default;
-  /// The locations must have been checked. `order` is that of the derivatives, 0 or 1.
-  FixedRows(const LocationBatch& at, const TileEvaluator& evaluator, const TileTable& table,
-            int order, int threads);
+  /// place(row) returns where the location of a row lies. `order` is that of the derivatives, 0 or
+  /// 1.
+  FixedRows(const TileTable& table, std::size_t count,
+            const std::function<TileLocation(std::size_t)>& place, int order, int threads);
 
   std::size_t bytes() const;
+
+  /// Whether a location is one of `single`.
+  static bool isSingle(const TileTable& table, const TileLocation& at);
 
   Single single;
   Weighted weighted;

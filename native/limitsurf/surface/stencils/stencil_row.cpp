@@ -14,11 +14,6 @@ namespace {
 
 using Weights = StencilRow::Weights;
 
-bool isOnVertices(const TileTable& table, const BSplineTile& tile) {
-  return std::all_of(tile.points.begin(), tile.points.end(),
-                     [&](int point) { return point < table.points.cagePoints(); });
-}
-
 void turn(int c, double& du, double& dv) {
   for (; c > 0; --c) {
     const double before = du;
@@ -37,7 +32,7 @@ void turn(const TileLocation& at, Weights& w) {
 
 void StencilRow::set(const TileLocation& at, int order) {
   entries_.clear();
-  if (at.tile.kind == TileRef::kBSpline && isOnVertices(table_, table_.bsplines[at.tile.index])) {
+  if (at.tile.kind == TileRef::kBSpline && table_.isOnVertices(table_.bsplines[at.tile.index])) {
     setOnVertices(at);
     return;
   }

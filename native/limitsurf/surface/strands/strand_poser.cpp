@@ -10,12 +10,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "limitsurf/first_made.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
 #include "limitsurf/row_check.h"
+#include "limitsurf/surface/fixed/fixed_frame.h"
+#include "limitsurf/surface/fixed/pose_part.h"
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/strands/fingerprint.h"
 #include "limitsurf/surface/strands/root_pose.h"
+#include "limitsurf/surface/strands/strand_motion.h"
 #include "limitsurf/surface/strands/strand_offsets.h"
 
 namespace limitsurf {
@@ -76,98 +81,20 @@ float* rowOf(RowsOut<Rows>& rows, std::int64_t row) {
   return rows.data() + rows.cols() * row;
 }
 
-/// A vector of three plain numbers: Padded vectors that are made of single numbers have to pass
-/// through memory, which takes twice the time.
-struct Triple {
-  double x, y, z;
-
-  Triple(double a, double b, double c) : x(a), y(b), z(c) {}
-  explicit Triple(const Padded& v) : x(v[0]), y(v[1]), z(v[2]) {}
-  explicit Triple(const float* p) : x(p[0]), y(p[1]), z(p[2]) {}
-
-  Triple operator+(const Triple& other) const { return {x + other.x, y + other.y, z + other.z}; }
-  Triple operator-(const Triple& other) const { return {x - other.x, y - other.y, z - other.z}; }
-  void store(float* to) const {
-    to[0] = static_cast<float>(x);
-    to[1] = static_cast<float>(y);
-    to[2] = static_cast<float>(z);
-  }
-};
-
-Triple operator*(double factor, const Triple& v) {
-  return {factor * v.x, factor * v.y, factor * v.z};
-}
-
-/// A rigid motion: p goes to `to` + turn (p - from).
-struct Motion {
-  Triple turn[3];  // the columns
-  Triple from, to;
-
-  Triple turned(const Triple& v) const { return v.x * turn[0] + v.y * turn[1] + v.z * turn[2]; }
-  void move(const float* point, float* out) const {
-    (to + turned(Triple(point) - from)).store(out);
-  }
-  Motion inverse() const {
-    return {{{turn[0].x, turn[1].x, turn[2].x},
-             {turn[0].y, turn[1].y, turn[2].y},
-             {turn[0].z, turn[1].z, turn[2].z}},
-            to,
-            from};
-  }
-};
-
-/// The motion from the rest root, where the frame was the rotation by the quaternion
-/// `rest_rotation` of any length, to the root as it is posed.
-Motion motionOf(const float* rest_root, const float* rest_rotation, const RootPose& root) {
-  const double w = rest_rotation[0], x = rest_rotation[1], y = rest_rotation[2],
-               z = rest_rotation[3], twice = 2 / (w * w + x * x + y * y + z * z);
-  const double rest[3][3] = {
-      {1 - twice * (y * y + z * z), twice * (x * y - w * z), twice * (x * z + w * y)},
-      {twice * (x * y + w * z), 1 - twice * (x * x + z * z), twice * (y * z - w * x)},
-      {twice * (x * z - w * y), twice * (y * z + w * x), 1 - twice * (x * x + y * y)}};
-  const auto column = [&](int i) {
-    return rest[i][0] * Triple(root.frame[0]) + rest[i][1] * Triple(root.frame[1]) +
-           rest[i][2] * Triple(root.frame[2]);
-  };
-  return {{column(0), column(1), column(2)}, Triple(rest_root), Triple(root.position)};
-}
-
 std::uint32_t bitsOf(float value) {
   std::uint32_t bits;
   std::memcpy(&bits, &value, sizeof bits);
   return bits;
 }
 
-/// A 64-bit word mixed into a hash, after the finaliser of SplitMix64.
-std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
-  hash = (hash ^ word) * 0xbf58476d1ce4e5b9u;
-  return hash ^ (hash >> 32);
-}
-
-std::int32_t fingerprint(const float* points, std::size_t count) {
-  std::size_t bytes = count * 3 * sizeof(float);
-  std::uint64_t hash = mixed(0x9e3779b97f4a7c15u, bytes);
-  const char* at = reinterpret_cast<const char*>(points);
-  for (; bytes >= sizeof(std::uint64_t); bytes -= sizeof(std::uint64_t)) {
-    std::uint64_t word;
-    std::memcpy(&word, at, sizeof word);
-    hash = mixed(hash, word);
-    at += sizeof word;
-  }
-  if (bytes > 0) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, at, bytes);
-    hash = mixed(hash, word);
-  }
-  hash = (hash ^ (hash >> 29)) * 0x94d049bb133111ebu;
-  const auto high = static_cast<std::uint32_t>(hash >> 32);
-  const std::uint32_t never_zero = high == 0 ? 1 : high;
-  std::int32_t result;
-  std::memcpy(&result, &never_zero, sizeof result);
-  return result;
-}
-
 }  // namespace
+
+/// What carries strands.
+struct StrandPoser::Carrier {
+  const Eigen::Matrix4d& to_strands;
+  int threads;
+  const RowsIn<Points>* control_points;  // none: the surface in its pose
+};
 
 struct StrandPoser::Data {
   struct Strand {
@@ -183,6 +110,15 @@ struct StrandPoser::Data {
   void bind(Span<Location> at, const RowsIn<FloatPoints>& rest_roots,
             const RowsIn<FloatRotations>& rest_rotations, int threads);
 
+  /// Throws what the calls throw for what carries the strands.
+  void check(const Carrier& by) const {
+    checkThreads(by.threads);
+    checkMap(by.to_strands);
+    if (by.control_points) {
+      checkPositions(*by.control_points, surface.table.points.cagePoints(), by.threads);
+    }
+  }
+
   std::int64_t pointCount() const {
     return offsets.empty() ? static_cast<std::int64_t>(count) : offsets.back();
   }
@@ -190,41 +126,21 @@ struct StrandPoser::Data {
     return offsets.empty() ? static_cast<std::int64_t>(row) : offsets[row];
   }
 
-  /// Calls body(row, motion) for each bound strand, in parallel.
-  template <typename Body>
-  void forEachBound(const Eigen::Matrix4d& to_strands, int threads, const Body& body) const {
-    forEachBound(to_strands, threads, body, [](std::size_t) {});
-  }
-
-  /// The same, and calls after(row) for it when the strands of its task are done. (What was written
-  /// a moment ago is read slowly in other pieces than it was written in.)
+  /// Calls body(row, motion) for each bound strand, in parallel, and then after(row) when some
+  /// strands are done. (What was written a moment ago is read slowly in other pieces than it was
+  /// written in.)
   template <typename Body, typename After>
-  void forEachBound(const Eigen::Matrix4d& to_strands, int threads, const Body& body,
-                    const After& after) const {
-    const DirectionMaps directions(to_strands.topLeftCorner<3, 3>());
-    parallelFor(bound.size(), kRowsPerTask, threads, [&](std::size_t first, std::size_t last) {
-      RootFinder root(surface.table, surface.pose, to_strands, directions);
-      for (std::size_t i = first; i < last; ++i) {
-        const Strand& strand = bound[i];
-        if (i + kPrefetched < last) {
-          prefetchTile(surface.table, bound[i + kPrefetched].place.tile);
-        }
-        body(static_cast<std::size_t>(strand.row),
-             motionOf(strand.root, strand.rotation, root(strand.place)));
-      }
-      for (std::size_t i = first; i < last; ++i) {
-        after(static_cast<std::size_t>(bound[i].row));
-      }
-    });
+  void forEachBound(const Carrier& by, const Body& body, const After& after) const;
+  template <typename Body>
+  void forEachBound(const Carrier& by, const Body& body) const {
+    forEachBound(by, body, [](std::size_t) {});
   }
 
   /// Calls body(point, motion) for each point of bound strands, and leave(point) for all others.
   template <typename Body, typename Leave>
-  void forEachPoint(const Eigen::Matrix4d& to_strands, int threads, const Body& body,
-                    const Leave& leave) const {
-    checkThreads(threads);
-    checkMap(to_strands);
-    forEachBound(to_strands, threads, [&](std::size_t row, const Motion& motion) {
+  void forEachPoint(const Carrier& by, const Body& body, const Leave& leave) const {
+    check(by);
+    forEachBound(by, [&](std::size_t row, const Motion& motion) {
       for (std::int64_t point = begin(row), end = begin(row + 1); point < end; ++point) {
         body(point, motion);
       }
@@ -241,7 +157,116 @@ struct StrandPoser::Data {
   std::vector<std::int64_t> offsets;
   std::vector<Strand> bound;
   std::vector<int> unbound;
+  FirstMade<FixedPlan> plan;  // of the bound strands, for control points
+
+ private:
+  /// forEachBound() with control points.
+  template <typename Body, typename After>
+  void forEachFixed(const Carrier& by, const RootMap& map, const Body& body,
+                    const After& after) const;
+  /// Roots that stand where du and dv alone give no frame.
+  template <typename Body>
+  void forEachLate(const std::vector<std::size_t>& late, const Carrier& by, const RootMap& map,
+                   const Body& body) const;
 };
+
+template <typename Body, typename After>
+void StrandPoser::Data::forEachBound(const Carrier& by, const Body& body,
+                                     const After& after) const {
+  const RootMap map(by.to_strands);
+  const auto move = [&](const Strand& strand, const RootPose& root) {
+    body(static_cast<std::size_t>(strand.row), motionOf(strand.root, strand.rotation, root));
+  };
+  if (by.control_points) {
+    forEachFixed(by, map, move, after);
+    return;
+  }
+  parallelFor(bound.size(), kRowsPerTask, by.threads, [&](std::size_t first, std::size_t last) {
+    RootFinder root(surface.table, surface.pose, map);
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kPrefetched < last) {
+        prefetchTile(surface.table, bound[i + kPrefetched].place.tile);
+      }
+      move(bound[i], root(bound[i].place));
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      after(static_cast<std::size_t>(bound[i].row));
+    }
+  });
+}
+
+template <typename Body, typename After>
+void StrandPoser::Data::forEachFixed(const Carrier& by, const RootMap& map, const Body& move,
+                                     const After& after) const {
+  static_assert(kRowsPerTask % FixedFrame::kRowsPerBlock == 0, "tasks have whole blocks");
+  const FixedFrame frame(plan.get([&] {
+    const auto place = [this](std::size_t i) { return bound[i].place; };
+    return std::make_unique<const FixedPlan>(surface.tiles, bound.size(), place, 1, by.threads);
+  }),
+                         *by.control_points, by.threads);
+  std::vector<std::vector<std::size_t>> late_of_tasks(bound.size() / kRowsPerTask + 1);
+  parallelFor(bound.size(), kRowsPerTask, by.threads, [&](std::size_t first, std::size_t last) {
+    Padded vectors[3];
+    double numbers[3][3 * kRowsPerTask];
+    PatchResults<double> results{};
+    results.position = numbers[0];
+    results.du = numbers[1];
+    results.dv = numbers[2];
+    frame.evaluate(first, last, first, results);
+    std::vector<std::size_t>& late = late_of_tasks[first / kRowsPerTask];
+    bool is_late[kRowsPerTask] = {};
+    for (std::size_t i = first; i < last; ++i) {
+      const TileLocation& place = bound[i].place;
+      for (int d = 0; d < 3; ++d) {
+        const double* const from = numbers[d] + 3 * (i - first);
+        vectors[d] = {from[0], from[1], from[2], 0};
+      }
+      RootPose root;
+      if (!place.atVertex() && !TileEvaluator::needsModeProducts(place) &&
+          map.carry(vectors[0], vectors[1], vectors[2],
+                    TileEvaluator::normalLimits(frame.size(), 0, place.depth), root)) {
+        move(bound[i], root);
+      } else {
+        late.push_back(i);
+        is_late[i - first] = true;
+      }
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      if (!is_late[i - first]) {
+        after(static_cast<std::size_t>(bound[i].row));
+      }
+    }
+  });
+  std::vector<std::size_t> late;
+  for (const std::vector<std::size_t>& of_task : late_of_tasks) {
+    late.insert(late.end(), of_task.begin(), of_task.end());
+  }
+  if (!late.empty()) {
+    forEachLate(late, by, map, [&](const Strand& strand, const RootPose& root) {
+      move(strand, root);
+      after(static_cast<std::size_t>(strand.row));
+    });
+  }
+}
+
+template <typename Body>
+void StrandPoser::Data::forEachLate(const std::vector<std::size_t>& late, const Carrier& by,
+                                    const RootMap& map, const Body& body) const {
+  std::vector<TileRef> tiles;
+  for (const std::size_t i : late) {
+    tiles.push_back(bound[i].place.tile);
+  }
+  const PosePart part = posePart(surface.table, std::move(tiles));
+  Pose pose(surface.table, &part);
+  pose.set(*by.control_points, by.threads);
+  parallelFor(late.size(), kRowsPerTask, by.threads, [&](std::size_t first, std::size_t last) {
+    RootFinder root(surface.table, pose, map);
+    for (std::size_t i = first; i < last; ++i) {
+      const Strand& strand = bound[late[i]];
+      body(strand, root(strand.place));
+    }
+  });
+}
 
 void StrandPoser::Data::bind(Span<Location> at, const RowsIn<FloatPoints>& rest_roots,
                              const RowsIn<FloatRotations>& rest_rotations, int threads) {
@@ -294,14 +319,21 @@ StrandPoser& StrandPoser::operator=(StrandPoser&&) noexcept = default;
 
 std::size_t StrandPoser::size() const { return data_->count; }
 std::size_t StrandPoser::boundCount() const { return data_->bound.size(); }
+std::size_t StrandPoser::irregularCount() const {
+  return static_cast<std::size_t>(
+      std::count_if(data_->bound.begin(), data_->bound.end(), [this](const Data::Strand& strand) {
+        return !FixedRows::isSingle(data_->surface.table, strand.place);
+      }));
+}
 std::int64_t StrandPoser::pointCount() const { return data_->pointCount(); }
 
 void StrandPoser::pose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoints> posed,
-                       const Eigen::Matrix4d& to_strands, int threads) const {
+                       const Eigen::Matrix4d& to_strands, int threads,
+                       const RowsIn<Points>* control_points) const {
   checkRows("rest_points", rest_points.rows(), pointCount());
   checkRows("posed", posed.rows(), pointCount());
   data_->forEachPoint(
-      to_strands, threads,
+      {to_strands, threads, control_points},
       [&](std::int64_t i, const Motion& motion) {
         motion.move(rowOf(rest_points, i), rowOf(posed, i));
       },
@@ -310,9 +342,10 @@ void StrandPoser::pose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoin
 
 StrandPoser::Reposed StrandPoser::repose(const RowsIn<FloatPoints>& rest_points,
                                          RowsOut<FloatPoints> points,
-                                         const Eigen::Matrix4d& to_strands, int threads) const {
-  checkThreads(threads);
-  checkMap(to_strands);
+                                         const Eigen::Matrix4d& to_strands, int threads,
+                                         const RowsIn<Points>* control_points) const {
+  const Carrier by{to_strands, threads, control_points};
+  data_->check(by);
   checkRows("rest_points", rest_points.rows(), pointCount());
   checkRows("points", points.rows(), pointCount());
   const Data& data = *data_;
@@ -340,7 +373,7 @@ StrandPoser::Reposed StrandPoser::repose(const RowsIn<FloatPoints>& rest_points,
         fingerprint(points.data() + 3 * begin, static_cast<std::size_t>(end - begin));
   };
   data.forEachBound(
-      to_strands, threads,
+      by,
       [&](std::size_t row, const Motion& motion) {
         renew(row, [&](const float* rest, float* out) { motion.move(rest, out); });
       },
@@ -356,9 +389,9 @@ StrandPoser::Reposed StrandPoser::repose(const RowsIn<FloatPoints>& rest_points,
 
 void StrandPoser::unpose(const RowsIn<FloatPoints>& points, RowsOut<FloatPoints> rest_points,
                          const Eigen::Matrix4d& to_strands, const std::vector<char>& only,
-                         int threads) const {
-  checkThreads(threads);
-  checkMap(to_strands);
+                         int threads, const RowsIn<Points>* control_points) const {
+  const Carrier by{to_strands, threads, control_points};
+  data_->check(by);
   checkRows("points", points.rows(), pointCount());
   checkRows("rest_points", rest_points.rows(), pointCount());
   if (!only.empty()) {
@@ -367,7 +400,7 @@ void StrandPoser::unpose(const RowsIn<FloatPoints>& points, RowsOut<FloatPoints>
   }
   const Data& data = *data_;
   const auto isWanted = [&](std::size_t row) { return only.empty() || only[row]; };
-  data.forEachBound(to_strands, threads, [&](std::size_t row, const Motion& motion) {
+  data.forEachBound(by, [&](std::size_t row, const Motion& motion) {
     if (isWanted(row)) {
       const Motion back = motion.inverse();
       for (std::int64_t i = data.begin(row), end = data.begin(row + 1); i < end; ++i) {
@@ -385,11 +418,12 @@ void StrandPoser::unpose(const RowsIn<FloatPoints>& points, RowsOut<FloatPoints>
 }
 
 void StrandPoser::poseVectors(const RowsIn<FloatPoints>& rest_vectors, RowsOut<FloatPoints> posed,
-                              const Eigen::Matrix4d& to_strands, int threads) const {
+                              const Eigen::Matrix4d& to_strands, int threads,
+                              const RowsIn<Points>* control_points) const {
   checkRows("rest_vectors", rest_vectors.rows(), pointCount());
   checkRows("posed", posed.rows(), pointCount());
   data_->forEachPoint(
-      to_strands, threads,
+      {to_strands, threads, control_points},
       [&](std::int64_t i, const Motion& motion) {
         motion.turned(Triple(rowOf(rest_vectors, i))).store(rowOf(posed, i));
       },
@@ -398,11 +432,11 @@ void StrandPoser::poseVectors(const RowsIn<FloatPoints>& rest_vectors, RowsOut<F
 
 void StrandPoser::poseRotations(const RowsIn<FloatRotations>& rest_rotations,
                                 RowsOut<FloatRotations> posed, const Eigen::Matrix4d& to_strands,
-                                int threads) const {
+                                int threads, const RowsIn<Points>* control_points) const {
   checkRows("rest_rotations", rest_rotations.rows(), pointCount());
   checkRows("posed", posed.rows(), pointCount());
   data_->forEachPoint(
-      to_strands, threads,
+      {to_strands, threads, control_points},
       [&](std::int64_t i, const Motion& motion) {
         const Eigen::Vector4d q = rest_rotations.row(i).cast<double>().transpose();
         if (q.isZero(0)) {
