@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "limitsurf/surface/padded.h"
 #include "limitsurf/surface/patches/surface_patches.h"
+#include "limitsurf/surface/pose/padded.h"
 
 namespace limitsurf {
 

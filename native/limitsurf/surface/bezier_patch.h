@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limitsurf/surface/padded.h"
+#include "limitsurf/surface/pose/padded.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "limitsurf/eigen/bspline_window.h"
-#include "limitsurf/surface/padded.h"
+#include "limitsurf/surface/pose/padded.h"
 
 namespace limitsurf {
 

@@ -7,7 +7,7 @@
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/limit_surface.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/tile_evaluator.h"
 #include "limitsurf/surface/tiled_surface.h"
 #include "limitsurf/surface/vertex_approach.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/surface_data.h"
 #include "limitsurf/surface/tiled_surface.h"
 

@@ -5,7 +5,7 @@
 #include "limitsurf/surface/curvature/mode_products.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/jet.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 
 namespace limitsurf {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "limitsurf/patch/tile_table.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 
 namespace limitsurf {
 

@@ -3,7 +3,7 @@
 
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/jet.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 
 namespace limitsurf {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <tuple>
 
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/tile_evaluator.h"
 #include "limitsurf/surface/tiled_surface.h"
 #include "support/cages/meshes.h"

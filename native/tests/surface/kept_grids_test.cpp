@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/tiled_surface.h"
 #include "support/cages/meshes.h"
 

@@ -6,8 +6,8 @@
 #include "limitsurf/search/box_tree.h"
 #include "limitsurf/search/oriented_box.h"
 #include "limitsurf/surface/bezier_patch.h"
-#include "limitsurf/surface/padded.h"
 #include "limitsurf/surface/patches/surface_patches.h"
+#include "limitsurf/surface/pose/padded.h"
 
 namespace limitsurf {
 

@@ -3,7 +3,7 @@
 
 #include "limitsurf/surface/batch/patch_run.h"
 #include "limitsurf/surface/limit_surface.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/tiled_surface.h"
 
 namespace limitsurf {

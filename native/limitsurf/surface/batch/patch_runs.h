@@ -5,7 +5,7 @@
 
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/batch/patch_run.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 
 namespace limitsurf {
 

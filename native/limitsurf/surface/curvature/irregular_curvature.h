@@ -5,7 +5,7 @@
 
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/differential.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/tile_evaluator.h"
 
 namespace limitsurf {

@@ -10,8 +10,8 @@
 #include "limitsurf/large_pages.h"
 #include "limitsurf/surface/batch/patch_run.h"
 #include "limitsurf/surface/fixed/fixed_rows.h"
-#include "limitsurf/surface/padded_points.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/padded_points.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/tiled_surface.h"
 #include "limitsurf/types.h"
 

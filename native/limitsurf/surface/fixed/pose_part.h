@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limitsurf/patch/tile_table.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 
 namespace limitsurf {
 

@@ -10,7 +10,7 @@
 #include "limitsurf/large_pages.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/patches/surface_patches.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 
 namespace limitsurf {
 

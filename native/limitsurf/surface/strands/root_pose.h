@@ -6,7 +6,7 @@
 #include "limitsurf/direction_maps.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/batch/normal_limits.h"
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 #include "limitsurf/surface/tile_evaluator.h"
 
 namespace limitsurf {

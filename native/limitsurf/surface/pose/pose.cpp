@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/pose/pose.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limitsurf/surface/padded.h"
+#include "limitsurf/surface/pose/padded.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {

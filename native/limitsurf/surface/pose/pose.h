@@ -8,8 +8,8 @@
 #include "limitsurf/eigen/tile_grid.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/jet.h"
-#include "limitsurf/surface/padded_points.h"
-#include "limitsurf/surface/steps_made.h"
+#include "limitsurf/surface/pose/padded_points.h"
+#include "limitsurf/surface/pose/steps_made.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {

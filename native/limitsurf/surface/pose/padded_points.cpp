@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/padded_points.h"
+#include "limitsurf/surface/pose/padded_points.h"
 
 #include <algorithm>
 #include <cmath>
