@@ -19,9 +19,7 @@ BatchEvaluator<Real>::BatchEvaluator(const TileTable& table, const Pose& pose, i
                                      const PatchResults<Real>& results)
     : table_(table),
       pose_(pose),
-      kernel_(PatchKernels::get().evaluate<Real>(order)),
-      grid_kernel_(PatchKernels::get().evaluateOnGrids<Real>(order)),
-      single_kernel_(PatchKernels::get().evaluateSingles<Real>(order)),
+      kernels_(PatchKernels::of<Real>()),
       order_(order),
       results_(results),
       runs_(table, pose, order),
@@ -119,7 +117,7 @@ void BatchEvaluator<Real>::evaluateSingles() {
   if (has_normals) {
     run.normal_limits = alone_.normalLimits(0, 0);
   }
-  single_kernel_(run, results_);
+  kernels_.singles[order_](run, results_);
   if (has_normals) {
     for (unsigned i = 0; i < count; ++i) {
       completeNormals(singles_.tiles[i], 0, 0,
@@ -247,7 +245,7 @@ void BatchEvaluator<Real>::evaluateOnGrids(TileRef tile, int steps, int turns, i
   if (has_normals) {
     run.normal_limits = alone_.normalLimits(steps, depth);
   }
-  grid_kernel_(run, results_);
+  kernels_.on_grids[order_](run, results_);
   if (has_normals) {
     completeNormals(tile, turns, depth, rows);
   }
@@ -334,7 +332,7 @@ void BatchEvaluator<Real>::evaluatePatch(const TilePatch& patch, double scale,
   if (has_normals) {
     run.normal_limits = alone_.normalLimits(patch.steps, patch.depth);
   }
-  kernel_(run, results_);
+  kernels_.patches[order_](run, results_);
   if (has_normals) {
     completeNormals(patch.tile, patch.turns, patch.depth, rows);
   }

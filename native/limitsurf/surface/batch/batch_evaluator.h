@@ -66,9 +66,7 @@ class BatchEvaluator {
 
   const TileTable& table_;
   const Pose& pose_;
-  const typename PatchKernels::Evaluate<Real> kernel_;
-  const typename PatchKernels::EvaluateOnGrids<Real> grid_kernel_;
-  const typename PatchKernels::EvaluateSingles<Real> single_kernel_;
+  const PatchKernelsOf<Real>& kernels_;
   const int order_;
   const PatchResults<Real> results_;
   PatchRuns runs_;

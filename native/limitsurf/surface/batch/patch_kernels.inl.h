@@ -336,13 +336,11 @@ void evaluate(const PatchRun& run, const PatchResults<Real>& results) {
 #include "limitsurf/surface/batch/row_kernels.inl.h"
 #include "limitsurf/surface/batch/weighted_kernels.inl.h"
 
-inline const PatchKernels kKernels = {
-    {evaluate<0, double>, evaluate<1, double>, evaluate<2, double>},
-    {evaluate<0, float>, evaluate<1, float>, evaluate<2, float>},
-    {evaluateOnGrids<0, double>, evaluateOnGrids<1, double>, evaluateOnGrids<2, double>},
-    {evaluateOnGrids<0, float>, evaluateOnGrids<1, float>, evaluateOnGrids<2, float>},
-    {evaluateSingles<0, double>, evaluateSingles<1, double>, evaluateSingles<2, double>},
-    {evaluateSingles<0, float>, evaluateSingles<1, float>, evaluateSingles<2, float>},
-    {evaluateWeighted<0, double>, evaluateWeighted<1, double>},
-    {evaluateWeighted<0, float>, evaluateWeighted<1, float>},
+template <typename Real>
+inline constexpr PatchKernelsOf<Real> kKernelsOf = {
+    {evaluate<0, Real>, evaluate<1, Real>, evaluate<2, Real>},
+    {evaluateOnGrids<0, Real>, evaluateOnGrids<1, Real>, evaluateOnGrids<2, Real>},
+    {evaluateSingles<0, Real>, evaluateSingles<1, Real>, evaluateSingles<2, Real>},
+    {evaluateWeighted<0, Real>, evaluateWeighted<1, Real>},
 };
+inline const PatchKernels kKernels = {kKernelsOf<double>, kKernelsOf<float>};

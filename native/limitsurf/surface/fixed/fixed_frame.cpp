@@ -101,11 +101,11 @@ template <typename Real>
 void FixedFrame::evaluate(std::size_t begin, std::size_t end, std::size_t first,
                           const PatchResults<Real>& results) const {
   const TileTable& table = plan_.tiles_->table;
+  const PatchKernelsOf<Real>& kernels = PatchKernels::of<Real>();
   const int order = plan_.order_;
   const auto points = numbersOf(std::as_const(working_->points).data());
 
   const FixedRows::Single& single = plan_.rows_.single;
-  const auto single_kernel = PatchKernels::get().evaluateSingles<Real>(order);
   forEachBlock(single.rows, begin, end, first,
                [&](std::size_t place, std::size_t count, const std::size_t* rows) {
                  const int* indices[kRowsPerBlock];
@@ -119,16 +119,16 @@ void FixedFrame::evaluate(std::size_t begin, std::size_t end, std::size_t first,
                  run.v = single.v.data() + place;
                  run.rows = rows;
                  run.count = count;
-                 single_kernel(run, results);
+                 kernels.singles[order](run, results);
                });
 
   const FixedRows::Weighted& weighted = plan_.rows_.weighted;
-  const auto weighted_kernel = PatchKernels::get().evaluateWeighted<Real>(order);
   forEachBlock(weighted.rows, begin, end, first,
                [&](std::size_t place, std::size_t count, const std::size_t* rows) {
-                 weighted_kernel({points, weighted.offsets.data() + place, weighted.indices.data(),
-                                  weighted.weights.data(), place, rows, count},
-                                 results);
+                 kernels.weighted[order](
+                     {points, weighted.offsets.data() + place, weighted.indices.data(),
+                      weighted.weights.data(), place, rows, count},
+                     results);
                });
 
   const FixedRows::Posed& posed = plan_.rows_.posed;
