@@ -30,7 +30,7 @@ from limit_surface.reading import attributes  # noqa: E402
 COUNTS = (10_000, 100_000, 1_000_000)
 SIDE, POINTS = 100, 8
 TRIANGLE_SIDE = 71  # two triangles for each quad
-FRAMES = 8
+FRAMES = 20  # live following prepares roots on irregular faces after twelve
 
 
 def main() -> None:

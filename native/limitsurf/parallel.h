@@ -24,7 +24,9 @@ constexpr std::size_t kRowsPerTask = 512;
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or on at
 /// most `threads` of them. All ranges but the last have `grain` elements. What a body does must not
 /// depend on how the range is divided. It may call parallelFor(): if an exception ends the outer
-/// loop, the inner ones end after their present ranges.
+/// loop, the inner ones end after their present ranges, with LoopEnded. Within a task of an
+/// interruptible loop, an inner one takes the threads of the outer one, whatever `threads` is:
+/// questions to the caller (WorkerInterruption) would not leave an arena of its own.
 ///
 /// InterruptionPoint::pass() is called after each range. On the calling thread it calls the
 /// caller's interruption point. On others it ends the range if the loop has ended, and a body that
@@ -68,7 +70,7 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
           },
           tbb::simple_partitioner());
     };
-    if (threads == 0) {
+    if (threads == 0 || WorkerInterruption::any()) {
       run();
     } else {
       // TBB warns of an arena with more threads than the machine has cores.
@@ -76,6 +78,7 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
       arena.execute(run);
     }
   }
+  endWithLoop();
   InterruptionPoint::pass();
 }
 

@@ -70,18 +70,25 @@ class WorkerInterruption::Questions {
 
 WorkerInterruption::WorkerInterruption() {
   point_.emplace([this] { pass(); });
+  ++count();
+}
+
+void WorkerInterruption::leave() {
+  if (point_) {
+    point_.reset();
+    --count();
+  }
 }
 
 WorkerInterruption::~WorkerInterruption() {
-  // Tasks that this thread takes up while it waits are not part of this one.
-  point_.reset();
+  leave();
   if (questions_) {
     questions_->wait();
   }
 }
 
 void WorkerInterruption::end() {
-  point_.reset();
+  leave();
   if (questions_) {
     questions_->wait();
     questions_->rethrow();

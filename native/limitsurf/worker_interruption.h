@@ -47,13 +47,23 @@ class WorkerInterruption {
   /// called once, at the end of the task.
   void end();
 
+  /// Whether one is in effect on this thread.
+  static bool any() { return count() > 0; }
+
  private:
   class Questions;
   using Clock = std::chrono::steady_clock;
   /// As often as the caller looks for signals.
   static constexpr std::chrono::milliseconds kBetween{20};
 
+  static int& count() {
+    static thread_local int count = 0;
+    return count;
+  }
   void pass();
+  /// Takes it out of effect: tasks that this thread takes up while it waits are not part of this
+  /// one.
+  void leave();
 
   std::unique_ptr<Questions> questions_;  // none before the first is left: most tasks are short
   Clock::time_point next_ = Clock::now() + kBetween;

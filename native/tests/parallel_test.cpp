@@ -7,6 +7,7 @@
 #include <chrono>
 #include <functional>
 #include <future>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -195,6 +196,49 @@ TEST(WorkerInterruption, LoopsWithinLoopsEndHoweverLongTheirRangesAre) {
       EXPECT_GT(passes, 0) << threads;
     }
   }));
+}
+
+/// The inner loop asks for fewer threads than there are: it would have an arena of its own, which
+/// nobody enters any more when it has ended.
+TEST(WorkerInterruption, InnerLoopsOfFewThreadsEnd) {
+  EXPECT_TRUE(returns([] {
+    for (const int threads : {0, 2}) {
+      std::atomic<int> ranges{0};
+      const InterruptionPoint point([] {});
+      parallelFor(6, 1, threads, [&](std::size_t, std::size_t) {
+        parallelFor(6, 1, 2, [&](std::size_t, std::size_t) {
+          std::this_thread::sleep_for(kLong / 2);
+          ++ranges;
+        });
+      });
+      EXPECT_EQ(ranges, 36) << threads;
+    }
+  }));
+}
+
+/// An inner loop that ends early because the outer one has ended must not seem to be done.
+TEST(ParallelFor, BodiesDoNotGoOnAfterAnInnerLoopThatWasEnded) {
+  for (const bool has_point : {false, true}) {
+    std::optional<InterruptionPoint> point;
+    if (has_point) {
+      point.emplace([] {});
+    }
+    std::atomic<int> halves{0};
+    EXPECT_THROW(parallelFor(4, 1, 0,
+                             [&](std::size_t begin, std::size_t) {
+                               if (begin == 3) {
+                                 throw std::runtime_error("enough");
+                               }
+                               std::atomic<int> done{0};
+                               parallelFor(2000, 1, 0, [&](std::size_t, std::size_t) {
+                                 std::this_thread::sleep_for(std::chrono::microseconds(50));
+                                 ++done;
+                               });
+                               halves += done < 2000 ? 1 : 0;
+                             }),
+                 std::runtime_error);
+    EXPECT_EQ(halves, 0) << has_point;
+  }
 }
 
 /// What the caller's interruption point throws, it throws once: a signal is told once.

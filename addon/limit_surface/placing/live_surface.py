@@ -50,7 +50,6 @@ class PosedSurface(NamedTuple):
 
     limit: limitsurf.LimitSurface
     positions: np.ndarray  # (vertices of the control mesh, 3) float64
-    is_lasting: bool  # the surface has been the same in an earlier frame
 
     def set_pose(self) -> None:
         """Gives the surface itself this pose."""
@@ -68,7 +67,6 @@ class LiveSurface:
 
     def __init__(self) -> None:
         self.version = 0
-        self._is_lasting = False  # the limit surface is that of an earlier pose
         self._is_behind = True  # something has moved since the pose was read, or there is none yet
         self._checksums: tuple[object, ...] | None = None
         self._faces: tuple[int, int, int] | None = None  # what tells the mesh's faces from others
@@ -105,7 +103,7 @@ class LiveSurface:
 
     def posed(self, pose: SurfacePose | None = None) -> PosedSurface:
         """Returns the surface in its present pose, or in an earlier one."""
-        return PosedSurface(self.limit, (pose or self.pose).positions, self._is_lasting)
+        return PosedSurface(self.limit, (pose or self.pose).positions)
 
     def _take(
         self,
@@ -127,7 +125,6 @@ class LiveSurface:
             if not self._is_behind and self.pose.frame == frame:
                 return  # it was read for this frame before the exporter began
         self.version += 1
-        self._is_lasting = not is_other
         if is_other:
             self._checksums = None
             # without the modifier the surface is read after each update
@@ -155,7 +152,7 @@ def surface_at(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, frame: floa
     """Returns the limit surface of another frame."""
     with cage.opened(ob, depsgraph, _at(frame)) as (found, _):
         limit = found.surface()
-        return PosedSurface(limit, limit.positions, is_lasting=False)
+        return PosedSurface(limit, limit.positions)
 
 
 def _at(frame: float) -> Callable[[bpy.types.Object, bpy.types.Scene], None]:

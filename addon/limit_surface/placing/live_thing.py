@@ -43,9 +43,11 @@ from .places import NOWHERE, ROOT_KINDS, Places
 if TYPE_CHECKING:
     import limitsurf
 
-#: Up to so many strands, roots on irregular faces are prepared in the second frame if they are more
-#: than a tenth of all. Frames then need no posed surface, and take a quarter of the time. With more
-#: strands, the preparation would stop the artist for half a second on two cores.
+#: If more than a tenth of the roots stand on irregular faces, they are prepared after so many
+#: frames of the same strands and faces. Later frames need no posed surface, and take a quarter of
+#: the time. The preparation takes as long as 10 to 20 frames without it.
+_FRAMES_UNPREPARED = 12
+#: With more such roots the preparation would stop a playback for more than a second on one core.
 _MOST_PREPARED = 100_000
 
 
@@ -82,6 +84,8 @@ class LiveThing:
         self._binding: dict[str, np.ndarray] = {}
         self._poser: limitsurf.StrandPoser | None = None
         self._is_irregular = False  # it pays to prepare the poser for control points
+        self._frames = 0  # that this poser has shown
+        self._frame = 0.0  # the last one of them
         self._corners: _Corners | None = None
         self._buffers: dict[str, np.ndarray] = {}
         self._is_current = False  # points were read since the last pose
@@ -187,6 +191,8 @@ class LiveThing:
         self._is_current = False
         poser = self._poser
         assert poser is not None
+        if frame != self._frame:
+            self._frame, self._frames = frame, self._frames + 1
         positions = self._positions_of(posed)
         has_moved = self._pose_vectors(data, poser, matrix, positions)
         prints = np.zeros(len(poser), np.int32)
@@ -208,7 +214,7 @@ class LiveThing:
         """Returns what the poser's calls need to know of the pose: the control points, or None if
         the surface itself has the pose.
         """
-        if self._is_irregular and posed.is_lasting:
+        if self._is_irregular and self._frames > _FRAMES_UNPREPARED:
             return posed.positions
         posed.set_pose()
         return None
@@ -265,7 +271,7 @@ class LiveThing:
             or binding.keys() != self._binding.keys()
             or not all(_same_bits(binding[key], kept) for key, kept in self._binding.items())
         ):
-            self._poser = _poser(limit, binding, binding.get("offsets"))
+            self._poser, self._frames = _poser(limit, binding, binding.get("offsets")), 0
             irregular = self._poser.irregular_count
             self._is_irregular = len(self._poser) / 10 < irregular <= _MOST_PREPARED
             self._limit, self._binding, self._corners = limit, binding, None

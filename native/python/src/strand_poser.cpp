@@ -65,18 +65,18 @@ evaluate() gives the du of one side) or vanishes, F is made in the same way from
 
 `positions` (vertices, 3): the control points of a pose that the surface need not have, instead of
 set_positions() before the call. The surface's own pose is not looked at, and may be changed meanwhile.
-Where more than a tenth of the strands count as irregular (irregular_count), such calls take less time
-than set_positions() and a call without `positions`: a fifth of it on triangles. Results may differ in
-their last bits. The first such call prepares the roots as fixed_samples() does, which takes some 7
-microseconds and 320 bytes for each irregular strand on triangles: it pays if some 20 frames follow.
-Such calls raise MeshError as set_positions() does.
+Where irregular_count is more than a tenth of all strands, such calls take less time than set_positions()
+and a call without `positions`: on triangles, a tenth to a fifth. Results may differ in their last bits.
+The first such call prepares the roots as fixed_samples() does. On triangles that takes about 10
+microseconds of one core for each strand, and 320 bytes, which are kept: it pays if 10 to 20 frames
+follow. Such calls raise MeshError as set_positions() does.
 
 All methods raise ValueError for arrays of other shapes, for such an overlap and for matrices that are
 not finite, and TypeError for an `out` of another kind.
 )";
 
 constexpr char kPoseDoc[] =
-    R"((points, 3) float32: the rest shape, moved with the surface to its present pose.
+    R"((points, 3) float32: the rest shape, moved with the surface to its present pose, or to `positions`.
 
 Error: 4e-11 times (the diagonal of the transformed control mesh + the distance of the point from its
 root) times the condition number of the matrix, and the rounding to float32. Cost: an evaluation with
@@ -93,7 +93,7 @@ comparison and fingerprints(). Error and cost: as pose().
 )";
 
 constexpr char kUnposeDoc[] =
-    R"((points, 3) float32: the rest shape of points that lie on the present pose; the inverse of pose().
+    R"((points, 3) float32: the rest shape of points that pose() has moved: the inverse.
 
 With `only`, (n,) bool, the points of the other strands are left as they are in `out`, which must be
 given.
@@ -378,9 +378,10 @@ void bindStrandPoser(py::module_& module) {
       .def_property_readonly(
           "irregular_count",
           [](const BoundStrandPoser& self) { return self.poser().irregularCount(); },
-          "The number of strands that are bound to places whose control points are not a plain "
-          "grid of vertices: beside irregular vertices, on faces other than quads, at boundaries "
-          "and creases. Cost: O(n).")
+          "The number of bound strands that calls with `positions` move faster: beside irregular "
+          "vertices, on faces other than quads, at boundaries and creases. Strands nearer to an "
+          "irregular vertex than 2^-8 of a face, or beside one of more than 30 faces, do not "
+          "count. Cost: O(n).")
       .def_property_readonly(
           "point_count", [](const BoundStrandPoser& self) { return self.poser().pointCount(); },
           "The number of points of all strands.")

@@ -37,14 +37,14 @@ FixedPlan::FixedPlan(std::shared_ptr<const TiledSurface> tiles, std::size_t coun
   }
 }
 
-FixedPlan::~FixedPlan() { delete kept_.load(); }
+FixedPlan::~FixedPlan() = default;
 
 std::size_t FixedPlan::bytes() const {
   return rows_.bytes() + (part_.points.size() + part_.rings.size()) * sizeof(int);
 }
 
 FixedFrame::FixedFrame(const FixedPlan& plan, const RowsIn<Points>& control_points, int threads)
-    : plan_(plan), working_(plan.kept_.exchange(nullptr)) {
+    : plan_(plan), working_(plan.kept_.take()) {
   if (!working_) {
     working_ = std::make_unique<FixedPlan::Working>();
   }
@@ -59,7 +59,7 @@ FixedFrame::FixedFrame(const FixedPlan& plan, const RowsIn<Points>& control_poin
   working_->pose->set(control_points, threads);
 }
 
-FixedFrame::~FixedFrame() { delete plan_.kept_.exchange(working_.release()); }
+FixedFrame::~FixedFrame() { plan_.kept_.giveBack(std::move(working_)); }
 
 const PointsSize& FixedFrame::size() const { return working_->size; }
 

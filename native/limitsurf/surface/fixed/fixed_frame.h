@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
 
+#include "limitsurf/kept.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/surface/batch/patch_run.h"
 #include "limitsurf/surface/fixed/fixed_rows.h"
@@ -24,8 +24,6 @@ class FixedPlan {
   FixedPlan(std::shared_ptr<const TiledSurface> tiles, std::size_t count,
             const std::function<TileLocation(std::size_t)>& place, int order, int threads);
   ~FixedPlan();
-  FixedPlan(const FixedPlan&) = delete;
-  FixedPlan& operator=(const FixedPlan&) = delete;
 
   int vertexCount() const { return tiles_->table.points.cagePoints(); }
   std::size_t rowCount() const { return row_count_; }
@@ -41,9 +39,7 @@ class FixedPlan {
   int order_;
   FixedRows rows_;
   PosePart part_;  // what rows_.posed need
-  /// What a frame worked with, for the next one: to get the memory from the system takes as long as
-  /// to fill it. Frames that exist at the same time do not share it.
-  mutable std::atomic<Working*> kept_{nullptr};
+  Kept<Working> kept_;
 };
 
 /// The rows of a plan with the control points of one frame.

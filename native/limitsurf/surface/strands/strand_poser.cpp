@@ -15,10 +15,9 @@
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
 #include "limitsurf/row_check.h"
-#include "limitsurf/surface/fixed/fixed_frame.h"
-#include "limitsurf/surface/fixed/pose_part.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/strands/fingerprint.h"
+#include "limitsurf/surface/strands/fixed_roots.h"
 #include "limitsurf/surface/strands/root_pose.h"
 #include "limitsurf/surface/strands/strand_motion.h"
 #include "limitsurf/surface/strands/strand_offsets.h"
@@ -157,17 +156,7 @@ struct StrandPoser::Data {
   std::vector<std::int64_t> offsets;
   std::vector<Strand> bound;
   std::vector<int> unbound;
-  FirstMade<FixedPlan> plan;  // of the bound strands, for control points
-
- private:
-  /// forEachBound() with control points.
-  template <typename Body, typename After>
-  void forEachFixed(const Carrier& by, const RootMap& map, const Body& body,
-                    const After& after) const;
-  /// Roots that stand where du and dv alone give no frame.
-  template <typename Body>
-  void forEachLate(const std::vector<std::size_t>& late, const Carrier& by, const RootMap& map,
-                   const Body& body) const;
+  FirstMade<FixedRoots> fixed;  // of the bound strands, for control points
 };
 
 template <typename Body, typename After>
@@ -178,7 +167,16 @@ void StrandPoser::Data::forEachBound(const Carrier& by, const Body& body,
     body(static_cast<std::size_t>(strand.row), motionOf(strand.root, strand.rotation, root));
   };
   if (by.control_points) {
-    forEachFixed(by, map, move, after);
+    const FixedRoots& roots = fixed.get([&] {
+      std::vector<TileLocation> places(bound.size());
+      std::transform(bound.begin(), bound.end(), places.begin(),
+                     [](const Strand& strand) { return strand.place; });
+      return std::make_unique<const FixedRoots>(surface.tiles, std::move(places), by.threads);
+    });
+    roots.forEach(
+        *by.control_points, map, by.threads,
+        [&](std::size_t i, const RootPose& root) { move(bound[i], root); },
+        [&](std::size_t i) { after(static_cast<std::size_t>(bound[i].row)); });
     return;
   }
   parallelFor(bound.size(), kRowsPerTask, by.threads, [&](std::size_t first, std::size_t last) {
@@ -191,79 +189,6 @@ void StrandPoser::Data::forEachBound(const Carrier& by, const Body& body,
     }
     for (std::size_t i = first; i < last; ++i) {
       after(static_cast<std::size_t>(bound[i].row));
-    }
-  });
-}
-
-template <typename Body, typename After>
-void StrandPoser::Data::forEachFixed(const Carrier& by, const RootMap& map, const Body& move,
-                                     const After& after) const {
-  static_assert(kRowsPerTask % FixedFrame::kRowsPerBlock == 0, "tasks have whole blocks");
-  const FixedFrame frame(plan.get([&] {
-    const auto place = [this](std::size_t i) { return bound[i].place; };
-    return std::make_unique<const FixedPlan>(surface.tiles, bound.size(), place, 1, by.threads);
-  }),
-                         *by.control_points, by.threads);
-  std::vector<std::vector<std::size_t>> late_of_tasks(bound.size() / kRowsPerTask + 1);
-  parallelFor(bound.size(), kRowsPerTask, by.threads, [&](std::size_t first, std::size_t last) {
-    Padded vectors[3];
-    double numbers[3][3 * kRowsPerTask];
-    PatchResults<double> results{};
-    results.position = numbers[0];
-    results.du = numbers[1];
-    results.dv = numbers[2];
-    frame.evaluate(first, last, first, results);
-    std::vector<std::size_t>& late = late_of_tasks[first / kRowsPerTask];
-    bool is_late[kRowsPerTask] = {};
-    for (std::size_t i = first; i < last; ++i) {
-      const TileLocation& place = bound[i].place;
-      for (int d = 0; d < 3; ++d) {
-        const double* const from = numbers[d] + 3 * (i - first);
-        vectors[d] = {from[0], from[1], from[2], 0};
-      }
-      RootPose root;
-      if (!place.atVertex() && !TileEvaluator::needsModeProducts(place) &&
-          map.carry(vectors[0], vectors[1], vectors[2],
-                    TileEvaluator::normalLimits(frame.size(), 0, place.depth), root)) {
-        move(bound[i], root);
-      } else {
-        late.push_back(i);
-        is_late[i - first] = true;
-      }
-    }
-    for (std::size_t i = first; i < last; ++i) {
-      if (!is_late[i - first]) {
-        after(static_cast<std::size_t>(bound[i].row));
-      }
-    }
-  });
-  std::vector<std::size_t> late;
-  for (const std::vector<std::size_t>& of_task : late_of_tasks) {
-    late.insert(late.end(), of_task.begin(), of_task.end());
-  }
-  if (!late.empty()) {
-    forEachLate(late, by, map, [&](const Strand& strand, const RootPose& root) {
-      move(strand, root);
-      after(static_cast<std::size_t>(strand.row));
-    });
-  }
-}
-
-template <typename Body>
-void StrandPoser::Data::forEachLate(const std::vector<std::size_t>& late, const Carrier& by,
-                                    const RootMap& map, const Body& body) const {
-  std::vector<TileRef> tiles;
-  for (const std::size_t i : late) {
-    tiles.push_back(bound[i].place.tile);
-  }
-  const PosePart part = posePart(surface.table, std::move(tiles));
-  Pose pose(surface.table, &part);
-  pose.set(*by.control_points, by.threads);
-  parallelFor(late.size(), kRowsPerTask, by.threads, [&](std::size_t first, std::size_t last) {
-    RootFinder root(surface.table, pose, map);
-    for (std::size_t i = first; i < last; ++i) {
-      const Strand& strand = bound[late[i]];
-      body(strand, root(strand.place));
     }
   });
 }
@@ -322,7 +247,7 @@ std::size_t StrandPoser::boundCount() const { return data_->bound.size(); }
 std::size_t StrandPoser::irregularCount() const {
   return static_cast<std::size_t>(
       std::count_if(data_->bound.begin(), data_->bound.end(), [this](const Data::Strand& strand) {
-        return !FixedRows::isSingle(data_->surface.table, strand.place);
+        return FixedRoots::isFaster(data_->surface.table, strand.place);
       }));
 }
 std::int64_t StrandPoser::pointCount() const { return data_->pointCount(); }

@@ -18,7 +18,8 @@ using FloatRotations = Eigen::Matrix<float, Eigen::Dynamic, 4, Eigen::RowMajor>;
 /// Bound on the error of posed points before they are rounded to float: relative to the diagonal of
 /// the control mesh's bounding box, as `to_strands` carries it, plus the distance of the point from
 /// its strand's root. It is the sum of kPositionError and of a rotation's error, which is
-/// kNormalError for each of the normal and the tangent.
+/// kNormalError for each of the normal and the tangent. As that one, it holds for meshes that are
+/// not far from the origin: docs/accuracy.md, "Normals".
 constexpr double kStrandError = 4e-11;
 
 /// Strands that are bound to locations on a limit surface, and are carried along when the surface
@@ -63,12 +64,14 @@ class StrandPoser {
   StrandPoser(StrandPoser&&) noexcept;
   StrandPoser& operator=(StrandPoser&&) noexcept;
 
-  /// The numbers of strands, of those that are bound, of those that are bound to places whose
-  /// control points are not a plain grid of vertices, and of points.
+  /// The numbers of strands, of those that are bound, and of points.
   std::size_t size() const;
   std::size_t boundCount() const;
-  std::size_t irregularCount() const;
   std::int64_t pointCount() const;
+  /// The number of bound strands that calls with `control_points` move faster: at places that
+  /// depend on at most FixedSamples::kMostWeights vertices, which are no plain grid. Strands that
+  /// are nearer to an irregular vertex than 2^-8 of a face do not count. Cost: O(size()).
+  std::size_t irregularCount() const;
 
   // The calls below throw std::invalid_argument for arrays of other sizes, and for a matrix that is
   // not finite or whose last row is not (0, 0, 0, 1). Cost: an evaluation with first derivatives
@@ -76,14 +79,14 @@ class StrandPoser {
   //
   // They carry strands to the surface as it is posed; or, with `control_points`, one for each
   // vertex, to the surface with these. Its own pose is not looked at then, so that it need not be
-  // posed for each frame. That saves up to half a microsecond for each of irregularCount(), and
-  // costs up to 30 ns more for each of the others. The results may differ in their last bits. These
+  // posed for each frame. That saves half a microsecond to one for each of irregularCount(), and
+  // costs up to 30 ns more for each other strand. The results may differ in their last bits. These
   // calls throw MeshError as LimitSurface::setPositions() does. The first one prepares what
-  // FixedSamples have for the roots: it takes some 7 microseconds and 320 bytes for each of
-  // irregularCount() on triangles.
+  // FixedSamples have for the roots. On triangles that takes about 10 microseconds for each strand,
+  // and 320 bytes, and twice the memory meanwhile. From then on 32 bytes for each vertex are kept.
 
-  /// Moves the points of the rest shape to where they are on the surface as it is posed. Error:
-  /// kStrandError, and the rounding to float.
+  /// Moves the points of the rest shape to where they are on the surface. Error: kStrandError, and
+  /// the rounding to float.
   void pose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoints> posed,
             const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(), int threads = 0,
             const RowsIn<Points>* control_points = nullptr) const;
@@ -100,8 +103,8 @@ class StrandPoser {
                  const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(), int threads = 0,
                  const RowsIn<Points>* control_points = nullptr) const;
 
-  /// The inverse: the rest shape of points that lie on the surface as it is posed. With `only`, one
-  /// flag per strand, points of other strands are not written.
+  /// The inverse: the rest shape of points that lie where the surface carries them. With `only`,
+  /// one flag per strand, points of other strands are not written.
   void unpose(const RowsIn<FloatPoints>& points, RowsOut<FloatPoints> rest_points,
               const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(),
               const std::vector<char>& only = {}, int threads = 0,
