@@ -34,6 +34,7 @@ TURNS = [np.eye(3).tolist()] * 3
 PIXELS = np.ones((4, 4, 4)).tolist()
 COLOURS = [[0.5, 0.5, 0.5, 1.0]] * 3
 MATRIX = np.eye(4).tolist()
+POSE = {"matrix": MATRIX, "positions": SQUARES.tolist()}
 VIEW = np.diag([0.3, 0.3, -0.1, 1.0]).tolist()
 SAMPLES = SURFACE.fixed_samples(FACE, UV)
 POSER = SURFACE.strand_poser(FACE, UV, [[0.0, 0, 0]] * 3, TURNS)
@@ -96,22 +97,22 @@ CASES = {
         SAMPLES.evaluate,
         {"positions": SQUARES.tolist()},
     ),
-    "StrandPoser.pose": (POSER.pose, {"rest_points": POINTS, "matrix": MATRIX}),
+    "StrandPoser.pose": (POSER.pose, {"rest_points": POINTS, **POSE}),
     "StrandPoser.repose": (
         lambda **given: POSER.repose(points=np.zeros((3, 3), np.float32), **given),
-        {"rest_points": POINTS, "matrix": MATRIX},
+        {"rest_points": POINTS, **POSE},
     ),
     "StrandPoser.unpose": (
         lambda **given: POSER.unpose(out=np.zeros((3, 3), np.float32), **given),
-        {"points": POINTS, "matrix": MATRIX, "only": [True, False, True]},
+        {"points": POINTS, **POSE, "only": [True, False, True]},
     ),
     "StrandPoser.pose_vectors": (
         POSER.pose_vectors,
-        {"rest_vectors": POINTS, "matrix": MATRIX},
+        {"rest_vectors": POINTS, **POSE},
     ),
     "StrandPoser.pose_rotations": (
         POSER.pose_rotations,
-        {"rest_rotations": [[1.0, 0, 0, 0]] * 3, "matrix": MATRIX},
+        {"rest_rotations": [[1.0, 0, 0, 0]] * 3, **POSE},
     ),
     "StrandPoser.fingerprints": (POSER.fingerprints, {"points": POINTS}),
     "PtexLayout.map_coordinates": (ls.PtexLayout(9, 4).map_coordinates, ON),
