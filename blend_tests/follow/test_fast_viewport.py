@@ -59,7 +59,9 @@ def add_action(ob: bpy.types.Object) -> None:
 
 def add_keys(ob: bpy.types.Object) -> None:
     ob.shape_key_add(name="Basis")
-    for point in ob.shape_key_add(name="Up").data:
+    up = ob.shape_key_add(name="Up")
+    up.value = 0.0  # Blender 5.2 adds keys with the value 1
+    for point in up.data:
         point.co.z += 0.5
 
 
