@@ -6,6 +6,8 @@
 #include <atomic>
 #include <mutex>
 
+#include "limitsurf/loop_order.h"
+
 namespace limitsurf {
 
 class WorkerInterruption::Questions {
@@ -20,6 +22,7 @@ class WorkerInterruption::Questions {
     left_ = count;
     for (int i = 0; i < count; ++i) {
       tasks_.run([this] {
+        const LoopOrder::Task task(order_);
         ask();
         --left_;
       });
@@ -66,6 +69,7 @@ class WorkerInterruption::Questions {
   std::atomic<bool> has_thrown_{false};
   std::mutex mutex_;  // guards thrown_
   std::exception_ptr thrown_;
+  LoopOrder order_;  // made last: the tasks come after all of this is made, and before its end
 };
 
 WorkerInterruption::WorkerInterruption() {
