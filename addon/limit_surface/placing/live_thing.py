@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     import limitsurf
 
 #: If more than a tenth of the roots stand on irregular faces, they are prepared after so many
-#: frames of the same strands and faces. Later frames need no posed surface, and take a quarter of
+#: frames of the same strands and faces. Later frames need no posed surface, and take a third of
 #: the time. The preparation takes as long as 10 to 20 frames without it.
 _FRAMES_UNPREPARED = 12
 #: With more such roots the preparation would stop a playback for more than a second on one core.
