@@ -85,7 +85,6 @@ class LiveThing:
         self._poser: limitsurf.StrandPoser | None = None
         self._is_irregular = False  # it pays to prepare the poser for control points
         self._frames = 0  # that this poser has shown
-        self._frame = 0.0  # the last one of them
         self._corners: _Corners | None = None
         self._buffers: dict[str, np.ndarray] = {}
         self._is_current = False  # points were read since the last pose
@@ -191,8 +190,8 @@ class LiveThing:
         self._is_current = False
         poser = self._poser
         assert poser is not None
-        if frame != self._frame:
-            self._frame, self._frames = frame, self._frames + 1
+        if self.surface_pose is None or frame != self.surface_pose.frame:
+            self._frames += 1
         positions = self._positions_of(posed)
         has_moved = self._pose_vectors(data, poser, matrix, positions)
         prints = np.zeros(len(poser), np.int32)

@@ -216,21 +216,13 @@ struct CarrierArguments {
   int threads;
 };
 
-/// The same, for StrandPoser.
-struct Carrier {
-  Eigen::Matrix4d to_strands;
-  int threads;
-  const RowsIn<Points>* control_points;
-};
-
-/// Calls body(input, output, carrier) without the GIL, while the surface keeps its pose if that is
-/// what carries the strands.
+/// Calls body(input, output, matrix, control_points) without the GIL. Without control points the
+/// surface carries the strands, and keeps its pose meanwhile.
 template <int Columns, typename Body>
 py::object posed(const BoundStrandPoser& self, const py::object& object, const char* name,
                  const CarrierArguments& by, const py::object& out, const char* out_name,
                  const Body& body) {
-  const int threads = by.threads;
-  checkThreads(threads);
+  checkThreads(by.threads);
   const Floats from = floatRows<Columns>(object, name);
   const Eigen::Matrix4d map = matrixOrNone(by.matrix, "matrix");
   Doubles positions;
@@ -246,12 +238,12 @@ py::object posed(const BoundStrandPoser& self, const py::object& object, const c
   RowsMap<Columns> output(to.mutable_data(), to.shape(0), Columns);
   if (by.positions.is_none()) {
     const LongCall call(self.surface().lock);
-    body(input, output, Carrier{map, threads, nullptr});
+    body(input, output, map, nullptr);
   } else {
     const GilRelease release;
     const InterruptionPoint point = interruptible();
     const RowsIn<Points> rows = Eigen::Map<const Points>(positions.data(), positions.shape(0), 3);
-    body(input, output, Carrier{map, threads, &rows});
+    body(input, output, map, &rows);
   }
   return std::move(to);
 }
@@ -260,8 +252,9 @@ py::object pose(const BoundStrandPoser& self, const py::object& rest_points,
                 const py::object& matrix, const py::object& out, const py::object& positions,
                 int threads) {
   return posed<3>(self, rest_points, "rest_points", {matrix, positions, threads}, out, "out",
-                  [&](const auto& from, auto& to, const Carrier& by) {
-                    self.poser().pose(from, to, by.to_strands, by.threads, by.control_points);
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map,
+                      const RowsIn<Points>* control_points) {
+                    self.poser().pose(from, to, map, threads, control_points);
                   });
 }
 
@@ -273,8 +266,9 @@ py::tuple repose(const BoundStrandPoser& self, const py::object& rest_points,
   }
   StrandPoser::Reposed result;
   posed<3>(self, rest_points, "rest_points", {matrix, positions, threads}, points, "points",
-           [&](const auto& from, auto& to, const Carrier& by) {
-             result = self.poser().repose(from, to, by.to_strands, by.threads, by.control_points);
+           [&](const auto& from, auto& to, const Eigen::Matrix4d& map,
+               const RowsIn<Points>* control_points) {
+             result = self.poser().repose(from, to, map, threads, control_points);
            });
   return py::make_tuple(result.has_changed, arrayOf(result.fingerprints));
 }
@@ -296,9 +290,9 @@ py::object unpose(const BoundStrandPoser& self, const py::object& points, const 
     flags.assign(array.data(), array.data() + array.size());
   }
   return posed<3>(self, points, "points", {matrix, positions, threads}, out, "out",
-                  [&](const auto& from, auto& to, const Carrier& by) {
-                    self.poser().unpose(from, to, by.to_strands, flags, by.threads,
-                                        by.control_points);
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map,
+                      const RowsIn<Points>* control_points) {
+                    self.poser().unpose(from, to, map, flags, threads, control_points);
                   });
 }
 
@@ -306,9 +300,9 @@ py::object poseVectors(const BoundStrandPoser& self, const py::object& rest_vect
                        const py::object& matrix, const py::object& out, const py::object& positions,
                        int threads) {
   return posed<3>(self, rest_vectors, "rest_vectors", {matrix, positions, threads}, out, "out",
-                  [&](const auto& from, auto& to, const Carrier& by) {
-                    self.poser().poseVectors(from, to, by.to_strands, by.threads,
-                                             by.control_points);
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map,
+                      const RowsIn<Points>* control_points) {
+                    self.poser().poseVectors(from, to, map, threads, control_points);
                   });
 }
 
@@ -316,9 +310,9 @@ py::object poseRotations(const BoundStrandPoser& self, const py::object& rest_ro
                          const py::object& matrix, const py::object& out,
                          const py::object& positions, int threads) {
   return posed<4>(self, rest_rotations, "rest_rotations", {matrix, positions, threads}, out, "out",
-                  [&](const auto& from, auto& to, const Carrier& by) {
-                    self.poser().poseRotations(from, to, by.to_strands, by.threads,
-                                               by.control_points);
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map,
+                      const RowsIn<Points>* control_points) {
+                    self.poser().poseRotations(from, to, map, threads, control_points);
                   });
 }
 

@@ -32,9 +32,7 @@ FixedPlan::FixedPlan(std::shared_ptr<const TiledSurface> tiles, std::size_t coun
   for (const TileLocation& at : rows_.posed.at) {
     posed.push_back(at.tile);
   }
-  if (!posed.empty()) {
-    part_ = posePart(tiles_->table, std::move(posed));
-  }
+  part_ = posePart(tiles_->table, std::move(posed));
 }
 
 FixedPlan::~FixedPlan() = default;

@@ -11,12 +11,19 @@
 #include "limitsurf/surface/stencils/stencil_row.h"
 
 namespace limitsurf {
+
 bool FixedRows::isSingle(const TileTable& table, const TileLocation& at) {
   if (at.tile.kind != TileRef::kBSpline || at.depth > 0 || at.turns > 0) {
     return false;
   }
   const BSplineTile& tile = table.bsplines[at.tile.index];
   return !tile.hasEnds() && !tile.fine && tile.crease == 0 && table.isOnVertices(tile);
+}
+
+bool FixedRows::isOnLargeRing(const TileTable& table, const TileLocation& at) {
+  return at.tile.kind == TileRef::kRing &&
+         table.rings[table.ring_tiles[at.tile.index].ring].points.size() >
+             FixedSamples::kMostWeights;
 }
 
 /// Makes some of the rows.
@@ -64,9 +71,7 @@ class FixedRows::Builder {
  private:
   /// If it is true, the weights have been set.
   bool hasFewWeights(const TileLocation& at) {
-    if (at.tile.kind == TileRef::kRing &&
-        table_.rings[table_.ring_tiles[at.tile.index].ring].points.size() >
-            FixedSamples::kMostWeights) {
+    if (isOnLargeRing(table_, at)) {
       return false;
     }
     weights_.set(at, order_);

@@ -49,6 +49,8 @@ struct FixedRows {
 
   /// Whether a location is one of `single`.
   static bool isSingle(const TileTable& table, const TileLocation& at);
+  /// Whether a location is one of `posed` because its ring alone has so many points.
+  static bool isOnLargeRing(const TileTable& table, const TileLocation& at);
 
   Single single;
   Weighted weighted;

@@ -33,6 +33,9 @@ void addPoints(const TileTable& table, TileRef ref, std::vector<int>& points,
 
 PosePart posePart(const TileTable& table, std::vector<TileRef> tiles) {
   PosePart part;
+  if (tiles.empty()) {
+    return part;
+  }
   const auto key = [](TileRef tile) { return std::uint64_t{tile.kind} << 32 | tile.index; };
   std::sort(tiles.begin(), tiles.end(), [&](TileRef a, TileRef b) { return key(a) < key(b); });
   const auto end = std::unique(tiles.begin(), tiles.end(),

@@ -3,8 +3,6 @@
 
 #include <utility>
 
-#include "limitsurf/surface/fixed/fixed_samples.h"
-
 namespace limitsurf {
 namespace {
 
@@ -34,12 +32,8 @@ FixedRoots::FixedRoots(std::shared_ptr<const TiledSurface> tiles, std::vector<Ti
       part_(partOf(special_)) {}
 
 bool FixedRoots::isFaster(const TileTable& table, const TileLocation& place) {
-  if (isSpecial(place) || FixedRows::isSingle(table, place)) {
-    return false;
-  }
-  return place.tile.kind != TileRef::kRing ||
-         table.rings[table.ring_tiles[place.tile.index].ring].points.size() <=
-             FixedSamples::kMostWeights;
+  return !isSpecial(place) && !FixedRows::isSingle(table, place) &&
+         !FixedRows::isOnLargeRing(table, place);
 }
 
 PosePart FixedRoots::partOf(const Numbers& some) const {
