@@ -100,17 +100,41 @@ class ApproachTerms {
         window_(outermost(basis, face)) {}
 
   /// All terms, dominant ones first.
-  std::vector<Term> sorted() {
+  std::vector<Term> sorted() const {
+    std::vector<Term> terms;
     for (const ModePair& pair : basis_.pairs()) {
-      addPair(pair);
+      addPair(pair, terms);
     }
     for (const int mode : leadingModes()) {
       if (!inPair(mode)) {
-        addMode(mode);
+        addMode(mode, terms);
       }
     }
-    std::stable_sort(terms_.begin(), terms_.end(), dominates<Term, Term>);
-    return std::move(terms_);
+    std::stable_sort(terms.begin(), terms.end(), dominates<Term, Term>);
+    return terms;
+  }
+
+  /// The first of them: those of the two modes with the largest eigenvalues, and of all whose
+  /// eigenvalues have the size of the second one's. Empty where pairs have terms.
+  std::vector<Term> first() const {
+    std::vector<Term> terms;
+    if (!basis_.pairs().empty()) {
+      return terms;
+    }
+    const int count = firstModes();
+    double largest = 0, second = 0;
+    for (int mode = 1; mode < count; ++mode) {
+      const double size = std::abs(basis_.eigenvalue(mode));
+      second = std::max(second, std::min(size, largest));
+      largest = std::max(largest, size);
+    }
+    for (int mode = 1; mode < count; ++mode) {
+      if (std::abs(basis_.eigenvalue(mode)) >= second - kEqualGrowth) {
+        addMode(mode, terms);
+      }
+    }
+    std::stable_sort(terms.begin(), terms.end(), dominates<Term, Term>);
+    return terms;
   }
 
  private:
@@ -124,16 +148,22 @@ class ApproachTerms {
   /// The modes with the largest eigenvalues but the constant one. (The factor 2^n that both
   /// derivatives have in common does not change the order.)
   std::vector<int> leadingModes() const {
-    const int first = basis_.ring().kind == RingKind::dart
-                          ? basis_.modeCount()
-                          : std::min(basis_.modeCount(), kFirstModes);
-    std::vector<int> modes(static_cast<std::size_t>(first) - 1);
+    std::vector<int> modes(static_cast<std::size_t>(firstModes()) - 1);
     std::iota(modes.begin(), modes.end(), 1);
     const std::size_t kept = std::min(kLeadingModes, modes.size());
     std::partial_sort(modes.begin(), modes.begin() + static_cast<std::ptrdiff_t>(kept), modes.end(),
-                      [&](int a, int b) { return sizeOf(basis_, a) > sizeOf(basis_, b); });
+                      [&](int a, int b) {
+                        const double size_a = sizeOf(basis_, a), size_b = sizeOf(basis_, b);
+                        return size_a != size_b ? size_a > size_b : a < b;
+                      });
     modes.resize(kept);
     return modes;
+  }
+
+  /// The leading modes are among so many first ones.
+  int firstModes() const {
+    return basis_.ring().kind == RingKind::dart ? basis_.modeCount()
+                                                : std::min(basis_.modeCount(), kFirstModes);
   }
 
   Vector3 coefficientOf(int mode) const { return scale_ * coefficients_.row(mode).transpose(); }
@@ -144,38 +174,39 @@ class ApproachTerms {
   }
 
   /// The derivatives of mode `shape` times a coefficient.
-  void add(int shape, double growth, int power, const Vector3& coefficient) {
+  void add(int shape, double growth, int power, const Vector3& coefficient,
+           std::vector<Term>& terms) const {
     const Eigenbasis::Table table = basis_.table(shape, face_);
     PatchValues<double> patch;
     evaluateWindow<1>(table.grid + window_.b * tile_grid::kSize + window_.a, tile_grid::kSize,
                       window_.u, window_.v, patch);
-    terms_.push_back({growth, power, patch.du, patch.dv, coefficient});
+    terms.push_back({growth, power, patch.du, patch.dv, coefficient});
   }
 
-  void addMode(int mode) {
+  void addMode(int mode, std::vector<Term>& terms) const {
     const Vector3 coefficient = coefficientOf(mode);
-    add(mode, basis_.eigenvalue(mode), 0, coefficient);
+    add(mode, basis_.eigenvalue(mode), 0, coefficient, terms);
     for (const Eigenbasis::Chain& chain : basis_.chains()) {
       if (chain.from == mode) {
         add(chain.to, basis_.eigenvalue(mode), 1,
-            chain.rate / basis_.eigenvalue(mode) * coefficient);
+            chain.rate / basis_.eigenvalue(mode) * coefficient, terms);
       }
     }
   }
 
-  void addPair(const ModePair& pair) {
+  void addPair(const ModePair& pair, std::vector<Term>& terms) const {
     const Vector3 a = coefficientOf(pair.a), b = coefficientOf(pair.b);
     const double square = pair.forth * pair.back;
     if (square < 0) {  // a complex pair, turned by whole circles: both modes as they are
-      add(pair.a, largerSize(pair), 0, a);
-      add(pair.b, largerSize(pair), 0, b);
+      add(pair.a, largerSize(pair), 0, a, terms);
+      add(pair.b, largerSize(pair), 0, b, terms);
       return;
     }
     for (const double root : {std::sqrt(square), -std::sqrt(square)}) {
       // The eigenvector to mean + root is a + (root / back) b.
       const Vector3 share = (a + (pair.back / root) * b) / 2;
-      add(pair.a, pair.mean + root, 0, share);
-      add(pair.b, pair.mean + root, 0, (root / pair.back) * share);
+      add(pair.a, pair.mean + root, 0, share, terms);
+      add(pair.b, pair.mean + root, 0, (root / pair.back) * share, terms);
     }
   }
 
@@ -184,7 +215,6 @@ class ApproachTerms {
   const Points& coefficients_;
   const double scale_;
   const GridWindow window_;
-  std::vector<Term> terms_;
 };
 
 /// To the frame that is turned back by so many corners.
@@ -242,9 +272,8 @@ CrossTerm crossTerm(const Term& a, const Term& b) {
           area * a.coefficient.cross(b.coefficient)};
 }
 
-/// The leading term of the cross product. Products of coefficients count as zero if they are at
-/// most `least`.
-Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
+/// The products of all terms, dominant ones first.
+std::vector<CrossTerm> crossTerms(const std::vector<Term>& terms) {
   std::vector<CrossTerm> crosses;
   for (auto a = terms.begin(); a != terms.end(); ++a) {
     for (auto b = a + 1; b != terms.end(); ++b) {
@@ -252,6 +281,20 @@ Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
     }
   }
   std::stable_sort(crosses.begin(), crosses.end(), dominates<CrossTerm, CrossTerm>);
+  return crosses;
+}
+
+/// Only those that grow like the first one.
+void keepLeading(std::vector<CrossTerm>& crosses) {
+  const auto end = std::find_if(crosses.begin(), crosses.end(), [&](const CrossTerm& cross) {
+    return dominates(crosses.front(), cross);
+  });
+  crosses.erase(end, crosses.end());
+}
+
+/// The leading term of the cross product. Products of coefficients count as zero if they are at
+/// most `least`.
+Vector3 leadingNormal(const std::vector<CrossTerm>& crosses, double least) {
   return leadingSum(crosses, least,
                     [](const CrossTerm& cross) -> Part { return {cross.normal, cross.area}; });
 }
@@ -262,14 +305,24 @@ VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring
   const RingTile& tile = table.ring_tiles[ring_tile];
   const Pose::RingPose& ring = pose.ring(tile.ring);
   // Only directions are wanted. In a unit near their own size, products of lengths can be formed.
-  const double scale = scaleToOwnUnit(ring.largest);
-  std::vector<Term> terms =
-      ApproachTerms(*table.rings[tile.ring].basis, tile.face, ring.coefficients, scale).sorted();
-  turnBack(terms, turns);
-  const double size = scale * ring.largest;
-  return {leadingDerivative(terms, &Term::du, kVanishing * size),
-          leadingDerivative(terms, &Term::dv, kVanishing * size),
-          leadingNormal(terms, kVanishing * size * size)};
+  const double scale = scaleToOwnUnit(ring.largest), size = scale * ring.largest;
+  const ApproachTerms approach(*table.rings[tile.ring].basis, tile.face, ring.coefficients, scale);
+  const auto leading = [&](std::vector<Term> terms, bool are_all) -> VertexApproach {
+    turnBack(terms, turns);
+    std::vector<CrossTerm> crosses = crossTerms(terms);
+    if (!are_all) {
+      keepLeading(crosses);  // products with other terms may come between the others
+    }
+    return {leadingDerivative(terms, &Term::du, kVanishing * size),
+            leadingDerivative(terms, &Term::dv, kVanishing * size),
+            leadingNormal(crosses, kVanishing * size * size)};
+  };
+  // On most meshes the first sums do not vanish, and no others are needed.
+  const VertexApproach first = leading(approach.first(), false);
+  if (!first.du.isZero(0) && !first.dv.isZero(0) && !first.normal.isZero(0)) {
+    return first;
+  }
+  return leading(approach.sorted(), true);
 }
 
 }  // namespace limitsurf
