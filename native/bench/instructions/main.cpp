@@ -7,6 +7,7 @@
 //
 // Instructions for vectors that not every processor has are not used, so that the counts are the
 // same on all of them.
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -113,6 +114,11 @@ constexpr Work kWork[] = {
        const LimitSurface surface = regular();
        surface.frames(shuffled(surface, n), 1);
      }},
+    {"frames, at irregular vertices",
+     [](int n) {
+       const LimitSurface surface = limitSurface(fan(5, true, 1));
+       surface.frames(std::vector<Location>(static_cast<std::size_t>(n), {0, 0, 0}), 1);
+     }},
     {"closest, near",
      [](int n) {
        const LimitSurface surface = regular();
@@ -122,6 +128,14 @@ constexpr Work kWork[] = {
      [](int n) {
        const LimitSurface surface = regular();
        AreaSampler(surface, 1).uniform(n, 1, {}, 1);
+     }},
+    {"blue noise, one point a triangle",
+     [](int n) {
+       // About n / 10 triangles.
+       const LimitSurface surface = limitSurface(scanCage(static_cast<int>(std::sqrt(n / 20))));
+       BlueNoiseOptions options;
+       options.count = n / 10;
+       AreaSampler(surface, 1).blueNoise(options, 1);
      }},
     {"open, a pole with semi-sharp edges", [](int n) { limitSurface(creasedPole(n)); }},
     {"open, faces on one edge", [](int n) { limitSurface(book(n)); }},

@@ -150,13 +150,14 @@ TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {
     SCOPED_TRACE(name);
     const LimitSurface surface = limitSurface(cage);
     const SurfacePatches patches(surface);
+    const SettlingCores settling(patches);
     const double gap = 1e-4 * patches.diagonal();
     std::vector<SurfacePiece> pieces;
     for (int tile = 0; tile < patches.tileCount(); ++tile) {
       pieces.clear();
       patches.appendPieces(tile, pieces);
       if (!pieces.front().isCore()) continue;
-      CoreDescent descent(patches, pieces.front(), gap);
+      CoreDescent descent(patches, settling, pieces.front(), gap);
       const double first_reach = descent.reach();
       const NormalCone cone = descent.cone();
       EXPECT_LE(descent.reach(), first_reach * (1 + 1e-12));

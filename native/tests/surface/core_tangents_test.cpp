@@ -71,18 +71,18 @@ void checkCores(const Cage& cage, const std::string& name, Random& random, Count
       continue;
     }
     ++counts.known;
-    counts.narrow += settling.slopes[12] < 0.2;
+    counts.narrow += settling.slopeAfter(12) < 0.2;
     const int first = core.steps;
     std::vector<double> slopes(static_cast<std::size_t>(first), 0);
     SurfacePatches::SplitCore split;
     while (core.steps < kSteps) {
       patches.splitPatches(core, split);
-      slopes.push_back(largestSlope(split, settling.normal, random));
+      slopes.push_back(largestSlope(split, settling.normal(), random));
       core = split.core;
     }
     for (int n = first; n < CoreTangents::kSteps; ++n) {
       for (std::size_t later = static_cast<std::size_t>(n); later < slopes.size(); ++later) {
-        ASSERT_LE(slopes[later], settling.slopes[n] + kRounding)
+        ASSERT_LE(slopes[later], settling.slopeAfter(n) + kRounding)
             << name << ": " << n << ", " << later;
       }
     }

@@ -257,7 +257,7 @@ bool CellSplitting::coversCore(const NoiseDisc& disc, const TrialCell& core, dou
 
 CoreDescent& CellSplitting::descentOf(const TrialCell& core, double smallest) {
   if (!descent_) {
-    descent_.emplace(surface_.patches, core.piece, surface_.gap * smallest);
+    descent_.emplace(surface_.patches, surface_.settling, core.piece, surface_.gap * smallest);
   }
   return *descent_;
 }

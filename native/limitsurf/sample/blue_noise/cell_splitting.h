@@ -25,6 +25,7 @@ struct NoiseSurface {
   /// Of the one cell of each tile that is a core, once it is needed. Only what tries this cell
   /// writes to it.
   std::vector<CoreExtent> cores;
+  SettlingCores settling{patches};
 };
 
 /// Splits cells, and tells which of them discs cover. It keeps the patch of the last cell, because

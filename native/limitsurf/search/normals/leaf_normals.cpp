@@ -12,8 +12,6 @@ namespace {
 
 using Border = PieceNormals::Border;
 
-/// CoreTangents pay for kinds of which there are at least so many cores.
-constexpr int kManyCores = 20;
 /// A cone around the rest of a core is narrow enough if its angle is at most this, or this part of
 /// that of the patches before.
 constexpr double kNarrowRest = 0.05, kNarrowPart = 0.5;
@@ -60,13 +58,7 @@ PieceNormals ofPatch(const BezierPatch& patch) {
 
 }  // namespace
 
-LeafNormals::LeafNormals(const SearchTree& tree) : tree_(tree) {
-  for (const auto& [kind, count] : tree.patches.coreKinds()) {
-    if (count >= kManyCores) {
-      tangents_.emplace(kind, CoreTangents(*kind.first, kind.second));
-    }
-  }
-}
+LeafNormals::LeafNormals(const SearchTree& tree) : tree_(tree), settling_(tree.patches) {}
 
 PieceNormals LeafNormals::of(const SurfacePiece& leaf) const {
   if (!leaf.isCore()) {
@@ -84,13 +76,10 @@ PieceNormals LeafNormals::of(const SurfacePiece& leaf) const {
 }
 
 DirectionCone LeafNormals::coneOfCore(SurfacePiece core) const {
-  const auto tangents = tangents_.find(tree_.patches.coreKind(core));
-  Padded points[SurfacePatches::kMostCorePoints];
   CoreTangents::Settling settling;
-  const bool settles = tangents != tangents_.end() && tree_.patches.corePoints(core, points) &&
-                       tangents->second.settle(points, settling);
+  const bool settles = settling_.settle(core, settling);
   DirectionCone cone;
-  cone.axis = settles ? settling.normal
+  cone.axis = settles ? settling.normal()
                       : frameNormal(tree_.surface, tree_.patches.rectangle(core).at(0, 0));
   SurfacePatches::SplitCore split;
   InterruptionStride stride;
@@ -101,10 +90,10 @@ DirectionCone LeafNormals::coneOfCore(SurfacePiece core) const {
       cone = DirectionCone::around(cone, normalCone(patch));
     }
     core = split.core;
-    if (settles && core.steps < CoreTangents::kSteps) {
-      const double rest = std::atan(settling.slopes[core.steps]) + DirectionCone::kMargin;
+    if (settles) {
+      const double rest = std::atan(settling.slopeAfter(core.steps)) + DirectionCone::kMargin;
       if (rest <= std::max(kNarrowRest, kNarrowPart * cone.angle)) {
-        return DirectionCone::around(cone, {settling.normal, rest});
+        return DirectionCone::around(cone, {settling.normal(), rest});
       }
     }
   } while (!cone.isEverything() && tree_.patches.coreRadius(core) > tree_.tolerance &&

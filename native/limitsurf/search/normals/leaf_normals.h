@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
-
 #include "limitsurf/search/normals/piece_normals.h"
 #include "limitsurf/search/tree/search_tree.h"
-#include "limitsurf/surface/patches/core_tangents.h"
+#include "limitsurf/surface/patches/settling_cores.h"
 
 namespace limitsurf {
 
@@ -26,7 +24,7 @@ class LeafNormals {
   void setBorder(const SurfacePiece& core, PieceNormals& piece) const;
 
   const SearchTree& tree_;
-  std::map<SurfacePatches::CoreKind, CoreTangents> tangents_;
+  SettlingCores settling_;
 };
 
 }  // namespace limitsurf

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "limitsurf/surface/patches/core_step.h"
-#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 namespace {
@@ -179,30 +178,36 @@ bool CoreTangents::settle(const Padded points[], Settling& out) const {
   if (!(area > 0)) {
     return false;
   }
-  out.normal = across / area;
-  // What the two modes leave over of each point: within their plane, and off it.
-  double within[SurfacePatches::kMostCorePoints], off[SurfacePatches::kMostCorePoints];
+  out.tangents_ = this;
+  out.normal_ = across / area;
+  out.area_ = area;
+  out.longest_ = longest_ * std::sqrt(first.squaredNorm() + second.squaredNorm());
   for (std::size_t i = 0; i < size_; ++i) {
     const Vector3 rest =
         points[i].head<3>().matrix() - modes_[i][0] * first - modes_[i][1] * second;
-    off[i] = std::abs(rest.dot(out.normal));
-    within[i] = (rest - rest.dot(out.normal) * out.normal).norm();
-  }
-  const double longest = longest_ * std::sqrt(first.squaredNorm() + second.squaredNorm());
-  const double* weight = others_.data();
-  for (double& slope : out.slopes) {
-    double tangent_off = 0, tangent_within = 0;
-    for (std::size_t i = 0; i < size_; ++i, ++weight) {
-      tangent_off += *weight * off[i];
-      tangent_within += *weight * within[i];
-    }
-    // With s and t for the parts of two tangents within the plane, and a and b for those off it,
-    // their cross product rises by s x t along the axis, and has s x b + a x t across.
-    const double rise = least_area_ * area - tangent_within * (2 * longest + tangent_within);
-    const double aside = 2 * tangent_off * (longest + tangent_within);
-    slope = rise > 0 ? aside / rise : std::numeric_limits<double>::infinity();
+    const double off = rest.dot(out.normal_);
+    out.off_[i] = std::abs(off);
+    out.within_[i] = (rest - off * out.normal_).norm();
   }
   return true;
+}
+
+double CoreTangents::Settling::slopeAfter(int steps) const {
+  if (steps >= kSteps) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const std::size_t size = tangents_->size_;
+  const double* weights = &tangents_->others_[static_cast<std::size_t>(steps) * size];
+  double off = 0, within = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    off += weights[i] * off_[i];
+    within += weights[i] * within_[i];
+  }
+  // With s and t for the parts of two tangents within the plane, and a and b for those off it,
+  // their cross product rises by s x t along the axis, and has s x b + a x t across.
+  const double rise = tangents_->least_area_ * area_ - within * (2 * longest_ + within);
+  const double aside = 2 * off * (longest_ + within);
+  return rise > 0 ? aside / rise : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace limitsurf

@@ -5,6 +5,7 @@
 
 #include "limitsurf/eigen/eigenbasis.h"
 #include "limitsurf/surface/jet.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 
@@ -22,12 +23,23 @@ class CoreTangents {
   /// O(valence^3).
   CoreTangents(const Eigenbasis& basis, int face);
 
-  /// Normals of the patches beside a core.
-  struct Settling {
-    Vector3 normal;  ///< of the tangent plane, with unit length
+  /// Normals of the patches beside a core. Refers to the CoreTangents.
+  class Settling {
+   public:
+    /// That of the tangent plane, with unit length.
+    const Vector3& normal() const { return normal_; }
     /// The tangent of the largest angle between that normal and those of all patches that follow
-    /// after n steps, at [n]; infinity if nothing is known.
-    double slopes[kSteps];
+    /// after n steps; infinity if nothing is known, as after kSteps and more. O(valence).
+    double slopeAfter(int steps) const;
+
+   private:
+    friend class CoreTangents;
+
+    const CoreTangents* tangents_ = nullptr;
+    Vector3 normal_;
+    double area_, longest_;  // of the parallelogram of the two modes, and of the tangents
+    // What the two modes leave over of each point: within their plane, and off it.
+    double within_[SurfacePatches::kMostCorePoints], off_[SurfacePatches::kMostCorePoints];
   };
   /// From the points as SurfacePatches::corePoints() gives them. Returns false if nothing is known:
   /// where other modes than two span the tangent plane, or where they span none. O(valence).
