@@ -44,6 +44,21 @@ class BoxPoint {
     return (squared * kNearlyOne).min(std::numeric_limits<float>::max());
   }
 
+  /// Numbers by which a search chooses which child of a node to visit first: the bounds and the
+  /// squared distances of the middles. Where many boxes contain the point, as those of slivers do,
+  /// the bounds alone do not tell which is nearest.
+  Row nearness(const WideTree::Node& node, const Row& bounds) const {
+    if (is_far_) {
+      return bounds;
+    }
+    Row squared = Row::Zero();  // of twice the distances
+    for (int axis = 0; axis < 3; ++axis) {
+      squared +=
+          ((node.bounds[axis][0] - low_[axis]) + (node.bounds[axis][1] - high_[axis])).square();
+    }
+    return bounds + 0.25f * squared;
+  }
+
  private:
   Row squaredDistancesLess(const WideTree::Node& node) const {
     Row less = Row::Zero(), reach = less;

@@ -70,6 +70,8 @@ class PatchSearch {
   /// looked for in each: along a curve of places that are almost equally close, the corners of
   /// cells are no good guesses.
   static constexpr int kManyCells = 64;
+  /// Patches whose width is at most this part of their length count as narrow.
+  static constexpr double kNarrow = 1. / 32;
   /// The squared distance is computed anew after every so many divisions.
   static constexpr int kFreshDepths = 4;
   /// The rounding of a cell's points and of their distance from a plane, relative to the largest
@@ -165,9 +167,18 @@ class PatchSearch {
            (shape.t_strictly && (borders & (shape.t_side < 0 ? kSideT0 : kSideT1)) == 0);
   }
 
-  /// Whether the cell has no foot for certain: neither on its smooth part nor on a side where the
-  /// sheet ends. The closest point of a surface is a foot.
-  bool hasNoFootOfSheet(const SquaredDistance& f, const Cell& cell) {
+  /// Whether the patch is much longer than wide. Both of its parameters may lead along it.
+  bool isNarrow() const {
+    const BezierPatch::Point* p = relative_.points;
+    const BezierPatch::Point s = (p[3] - p[0]) + (p[15] - p[12]),
+                             t = (p[12] - p[0]) + (p[15] - p[3]);
+    const double ss = dot(s, s), tt = dot(t, t), st = dot(s, t), longer = std::max(ss, tt);
+    return ss * tt - st * st < kNarrow * kNarrow * longer * longer;
+  }
+
+  /// Whether the sheet ends at no side of the cell, or the distance falls along each such side
+  /// towards a corner beyond which the sheet continues: then no foot is on these sides.
+  bool hasNoFootOnBorders(const SquaredDistance& f, const Cell& cell) const {
     const unsigned borders = bordersOf(cell);
     for (const unsigned side : {kSideS0, kSideS1, kSideT0, kSideT1}) {
       if (borders & side) {
@@ -179,16 +190,40 @@ class PatchSearch {
         }
       }
     }
-    if (!normals_) {
-      normals_.emplace(patch_, best_.tolerance / 10);
+    return true;
+  }
+
+  /// Whether the cell has no foot for certain: neither on its smooth part nor on a side where the
+  /// sheet ends. The closest point of a surface is a foot.
+  bool hasNoFootOfSheet(const SquaredDistance& f, const Cell& cell) {
+    if (!hasNoFootOnBorders(f, cell)) {
+      return false;
     }
-    const NormalPolynomial::Cone normals = normals_->cone(cell);
     BezierPatch::Point points[16];
     pointsOf(cell, points);
     for (BezierPatch::Point& point : points) {
       point -= away_;
     }
-    return hasNoFoot(points, normals, best_.tolerance);
+    return hasNoFoot(points, normals().cone(cell), best_.tolerance);
+  }
+
+  /// The same of the whole patch, if it is narrow.
+  bool isBesideFeetOfSheet(const SquaredDistance& f, const Cell& whole) {
+    if (!isNarrow() || !hasNoFootOnBorders(f, whole)) {
+      return false;
+    }
+    BezierPatch::Point points[16];
+    for (int i = 0; i < 16; ++i) {
+      points[i] = relative_.points[i] - away_;
+    }
+    return normals().isBesideFeet(points, best_.tolerance);
+  }
+
+  const NormalPolynomial& normals() {
+    if (!normals_) {
+      normals_.emplace(patch_, best_.tolerance / 10);
+    }
+    return *normals_;
   }
 
   /// Whether a plane beside the searching point, no nearer to it than the closest point so far, has
@@ -309,6 +344,11 @@ class PatchSearch {
           offer(cell.s + (i & 1) * cell.s_size, cell.t + (i >> 1) * cell.t_size);
         }
       }
+    }
+    // Not before a place has been offered: searches would pass many such patches until they come to
+    // the one that has the foot.
+    if (cell.depth == 0 && isBesideFeetOfSheet(f, cell)) {
+      return;
     }
     visitParts(f, noise, cell, divisionOf(cell, shape));
   }

@@ -137,7 +137,8 @@ class ClosestSearch {
                  !(facing_ && cones_ && child < node.count &&
                    cones_->cannotFace(next, child, point_in_boxes_, unit_, reach_));
         };
-        open.add(node, squared, WideTree::children(node, matters), next.part);
+        open.add(node, squared, box_point.nearness(node, squared),
+                 WideTree::children(node, matters), next.part);
         continue;
       }
       const std::int32_t leaf = WideTree::leaf(next.place);

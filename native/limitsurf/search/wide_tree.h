@@ -69,9 +69,10 @@ class NearestFirst {
   /// and then as many nodes below.
   static constexpr int kMostOpen = (WideTree::kWidth - 1) * 2 * BoxTree::kMostDepth + 1;
 
-  /// Adds those children of a node of a part that have a bit in `bits`.
-  void add(const WideTree::Node& node, const WideTree::Row& keys, unsigned bits,
-           std::int32_t part) {
+  /// Adds those children of a node of a part that have a bit in `bits`. The one with the least
+  /// `nearness` will be taken first.
+  void add(const WideTree::Node& node, const WideTree::Row& keys, const WideTree::Row& nearness,
+           unsigned bits, std::int32_t part) {
     static_assert(WideTree::kWidth == 4, "a network that sorts four");
     if ((bits & (bits - 1)) == 0) {  // there is one, as at most nodes, or none
       const auto child = static_cast<int>((bits >> 1) - (bits >> 3));
@@ -83,7 +84,7 @@ class NearestFirst {
     // numbers that grow with the key and then the place among the children.
     std::uint64_t order[4];
     for (int child = 0; child < 4; ++child) {
-      const std::uint64_t number = static_cast<std::uint64_t>(ordered(keys[child])) << 32 |
+      const std::uint64_t number = static_cast<std::uint64_t>(ordered(nearness[child])) << 32 |
                                    static_cast<std::uint64_t>(child);
       order[child] = (bits >> child & 1) != 0 ? number : kNone;
     }

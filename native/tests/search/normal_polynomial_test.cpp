@@ -89,5 +89,53 @@ TEST(NormalPolynomial, FeetAreNotDenied) {
   EXPECT_GT(denied, 3000);
 }
 
+/// A narrow strip of a cylinder over a parabola, whose parameters both lead along it. Its normals
+/// lean far along it, and across by a part of its width.
+BezierPatch narrowPatch(double width, double bend, Random& random) {
+  const Eigen::Matrix3d turn(
+      Eigen::AngleAxisd(random.uniform(0, 3), random.vector(1).normalized()));
+  const double shear = random.uniform(-1, 1);
+  constexpr double kSquare[4] = {0, 0, 1. / 3, 1};  // the Bezier points of t^2
+  BezierPatch patch;
+  patch.anchor.setZero();
+  for (int i = 0; i < 16; ++i) {
+    const double s = i % 4 / 3., t = i / 4 / 3.;
+    const double height = kSquare[i % 4] + 2 * shear * s * t + shear * shear * kSquare[i / 4];
+    const Vector3 at = turn * Vector3(s + shear * t, width * (t + 0.1 * random.uniform()),
+                                      bend * height + 0.1 * width * width * random.uniform());
+    patch.points[i] = {at[0], at[1], at[2], 0};
+  }
+  return patch;
+}
+
+TEST(NormalPolynomial, NarrowPatchesBesideAPointHaveNoFoot) {
+  Random random(3);
+  int beside = 0, all = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const double width = std::pow(10., random.uniform(-6, -1));
+    const BezierPatch patch = narrowPatch(width, random.uniform(-0.3, 0.3), random);
+    BezierPatch::Values at;
+    patch.evaluate<1>(random.uniform(), random.uniform(), at);
+    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt).normalized();
+    const NormalPolynomial normals(patch, 0);
+    const auto isBeside = [&](const Vector3& from) {
+      std::array<BezierPatch::Point, 16> points;
+      for (int i = 0; i < 16; ++i) {
+        points[i] = patch.points[i] - BezierPatch::Point(from[0], from[1], from[2], 0);
+      }
+      return normals.isBesideFeet(points.data(), 1e-14);
+    };
+    // A point with a foot, near the patch or as far as it is long.
+    const double height = std::pow(10., random.uniform(-5, 0)) * (random.below(2) ? 1 : -1);
+    const Vector3 from = Vector3(at.value.head<3>()) + height * normal;
+    ASSERT_FALSE(isBeside(from)) << width << " " << height;
+    // The same point, moved across by some widths: the normals lean by about a width.
+    const Vector3 across = normal.cross(ds).normalized();
+    beside += isBeside(from + (3 + std::abs(height)) * width * across);
+    ++all;
+  }
+  EXPECT_GT(beside, 9 * all / 10);
+}
+
 }  // namespace
 }  // namespace limitsurf::test

@@ -273,6 +273,32 @@ TEST(ClosestAtPoles, CostHardlyGrowsWithTheNumberOfFaces) {
   EXPECT_LE(meanLeaves(pole(6), 0.1, 0), 40);
 }
 
+/// The faces of a pole are slivers whose boxes contain many points of other faces, so that the
+/// boxes do not tell which face is nearest: searches walked from face to face, around the pole, and
+/// visited 56 of 4,000 triangles' patches, in 660 cells.
+TEST(ClosestAtPoles, FewSliversAreSearchedForAPointBesideThem) {
+  for (const int faces : {100, 1000, 4000}) {
+    constexpr int kCount = 200;
+    const LimitSurface surface = limitSurface(pole(faces));
+    Random random(8);
+    std::vector<Location> places;
+    for (int i = 0; i < kCount; ++i) {
+      places.push_back({random.below(surface.faceCount()), random.uniform(), random.uniform()});
+    }
+    Points points = surface.evaluate(places).position;
+    for (int i = 0; i < kCount; ++i) {
+      points.row(i) += random.vector(0.1).transpose();
+    }
+    std::int64_t leaves = 0, cells = 0;
+    ClosestOptions options;
+    options.leaves = &leaves;
+    options.cells = &cells;
+    SurfaceSearch(surface).closest(points, options);
+    EXPECT_LE(leaves, 24 * kCount) << faces;
+    EXPECT_LE(cells, 130 * kCount) << faces;
+  }
+}
+
 TEST(RayCastAtPoles, RaysThroughTheVertexHitIt) {
   int hits = 0;
   for (const auto& [name, cage] : poles()) {

@@ -96,27 +96,30 @@ TEST(WideTree, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(WideTree, NearestFirstKeepsTheOrderOfKeys) {
+TEST(WideTree, NearestFirstKeepsTheOrderOfNearness) {
   Random random(2);
   for (int round = 0; round < 1000; ++round) {
     NearestFirst open;
     WideTree::Node node{};
     node.count = 1 + random.below(4);
-    WideTree::Row keys;
-    std::vector<NearestFirst::Entry> expected;
+    WideTree::Row keys, nearness;
+    std::vector<std::pair<float, NearestFirst::Entry>> expected;
     bool matters[4];
     for (int i = 0; i < 4; ++i) {
       node.children[i] = 10 + i;
-      keys[i] = static_cast<float>(random.below(5) - 2);  // often equal, often negative
+      keys[i] = static_cast<float>(random.uniform());
+      nearness[i] = static_cast<float>(random.below(5) - 2);  // often equal, often negative
       matters[i] = random.below(3) > 0;
-      if (i < node.count && matters[i]) expected.push_back({node.children[i], keys[i], round});
+      if (i < node.count && matters[i]) {
+        expected.push_back({nearness[i], {node.children[i], keys[i], round}});
+      }
     }
     std::stable_sort(expected.begin(), expected.end(),
-                     [](const auto& a, const auto& b) { return a.key < b.key; });
-    open.add(node, keys, WideTree::children(node, [&](int child) { return matters[child]; }),
-             round);
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    open.add(node, keys, nearness,
+             WideTree::children(node, [&](int child) { return matters[child]; }), round);
     NearestFirst::Entry next;
-    for (const NearestFirst::Entry& entry : expected) {
+    for (const auto& [near, entry] : expected) {
       ASSERT_TRUE(open.take(next));
       EXPECT_EQ(next.place, entry.place);
       EXPECT_EQ(next.key, entry.key);

@@ -109,6 +109,39 @@ NormalPolynomial::Cone NormalPolynomial::cone(const ParameterRectangle& on) cons
   return cone;
 }
 
+bool NormalPolynomial::isBesideFeet(const Point points[16], double noise) const {
+  const Point one = (points[3] - points[0]) + (points[15] - points[12]),
+              other = (points[12] - points[0]) + (points[15] - points[3]);
+  const Point& side = dot(one, one) > dot(other, other) ? one : other;
+  Point sum = at_[0];
+  for (int i = 1; i < kSize * kSize; ++i) {
+    sum += at_[i];
+  }
+  Point across = cross(sum, side);
+  across /= norm(across);
+  Point up = cross(side, across);
+  up /= norm(up);
+  double leaning = 0;
+  for (const Point& normal : at_) {
+    const double rise = dot(normal, up) - 2 * error_;
+    if (!(rise > 0)) {
+      return false;
+    }
+    leaning = std::max(leaning, (std::abs(dot(normal, across)) + 2 * error_) / rise);
+  }
+  double along = 0, largest = 0, low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int i = 0; i < 16; ++i) {
+    const double x = dot(points[i], across);
+    low = std::min(low, x);
+    high = std::max(high, x);
+    along = std::max(along, std::abs(dot(points[i], up)));
+    largest = std::max(largest, norm(points[i]));
+  }
+  // At a foot the difference is a multiple of the normal.
+  const double aside = leaning * (along + noise) + noise + kRounding * largest;
+  return low > aside || high < -aside;
+}
+
 bool hasNoFoot(const Point points[16], const NormalPolynomial::Cone& normals, double noise) {
   if (!(normals.tangent < std::numeric_limits<double>::infinity())) {
     return false;

@@ -22,6 +22,11 @@ class NormalPolynomial {
   /// A cone around the normals on a rectangle of the parameters.
   Cone cone(const ParameterRectangle& on) const;
 
+  /// Whether no point of the whole patch is the foot of a perpendicular, as far as can be told
+  /// across its longer side alone. The normals of a narrow patch may lean far along it, but hardly
+  /// across. `points` and `noise` are as for hasNoFoot().
+  bool isBesideFeet(const BezierPatch::Point points[16], double noise) const;
+
  private:
   static constexpr int kSize = 6;
 

@@ -65,7 +65,7 @@ class RaySearch {
       const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next_.place)];
       WideTree::Row from;
       const unsigned met = box_ray_.meet(node, begin_, roundedUp(end()), from);
-      open_.add(node, from, met, next_.part);
+      open_.add(node, from, from, met, next_.part);
       return takeNext();
     }
     const std::int32_t leaf = WideTree::leaf(next_.place);
