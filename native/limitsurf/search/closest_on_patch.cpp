@@ -63,8 +63,9 @@ class PatchSearch {
   /// A search ends after this many cells: on patches without area many points may be equally close
   /// but for rounding.
   static constexpr int kMostCells = 1 << 17;
-  /// After this many cells the normals of the patch are bounded, to leave out cells without feet:
-  /// if the tangents are nearly parallel, the squared distance is convex in a narrow band only.
+  /// After this many cells, and from the first one on if the patch is narrow, the normals of the
+  /// patch are bounded, to leave out cells without feet: if the tangents are nearly parallel, the
+  /// squared distance is convex in a narrow band only.
   static constexpr int kFewCells = 16;
   /// After this many cells each is compared with a plane of its own (isAside()), and a minimum is
   /// looked for in each: along a curve of places that are almost equally close, the corners of
@@ -204,19 +205,7 @@ class PatchSearch {
     for (BezierPatch::Point& point : points) {
       point -= away_;
     }
-    return hasNoFoot(points, normals().cone(cell), best_.tolerance);
-  }
-
-  /// The same of the whole patch, if it is narrow.
-  bool isBesideFeetOfSheet(const SquaredDistance& f, const Cell& whole) {
-    if (!isNarrow() || !hasNoFootOnBorders(f, whole)) {
-      return false;
-    }
-    BezierPatch::Point points[16];
-    for (int i = 0; i < 16; ++i) {
-      points[i] = relative_.points[i] - away_;
-    }
-    return normals().isBesideFeet(points, best_.tolerance);
+    return normals().hasNoFoot(cell, points, best_.tolerance);
   }
 
   const NormalPolynomial& normals() {
@@ -328,7 +317,8 @@ class PatchSearch {
     if (facing_ && cells_ > kFewCells && isLine()) {
       return;
     }
-    if ((cells_ > kFewCells && hasNoFootOfSheet(f, cell)) ||
+    const bool tests_feet = cells_ > kFewCells || isNarrow();
+    if ((tests_feet && cell.depth > 0 && hasNoFootOfSheet(f, cell)) ||
         (cells_ > kManyCells && isAside(cell))) {
       return;
     }
@@ -345,9 +335,9 @@ class PatchSearch {
         }
       }
     }
-    // Not before a place has been offered: searches would pass many such patches until they come to
-    // the one that has the foot.
-    if (cell.depth == 0 && isBesideFeetOfSheet(f, cell)) {
+    // A patch without a foot offers a place as well: otherwise searches would pass many such
+    // patches until they come to the one that has the foot.
+    if (tests_feet && cell.depth == 0 && hasNoFootOfSheet(f, cell)) {
       return;
     }
     visitParts(f, noise, cell, divisionOf(cell, shape));

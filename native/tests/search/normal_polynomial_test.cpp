@@ -81,10 +81,10 @@ TEST(NormalPolynomial, FeetAreNotDenied) {
     const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt).normalized();
     const Vector3 from = Vector3(at.value.head<3>()) + random.below(2) * random.uniform() * normal;
     const NormalPolynomial normals(patch, 0);
-    EXPECT_FALSE(hasNoFoot(part(on, from).data(), normals.cone(on), 1e-14)) << squeeze;
+    EXPECT_FALSE(normals.hasNoFoot(on, part(on, from).data(), 1e-14)) << squeeze;
     // Parts of the patch elsewhere are left out, unless the patch bends too much.
     const ParameterRectangle other = rectangleIn(random);
-    denied += hasNoFoot(part(other, from).data(), normals.cone(other), 1e-14);
+    denied += normals.hasNoFoot(other, part(other, from).data(), 1e-14);
   }
   EXPECT_GT(denied, 3000);
 }
@@ -123,7 +123,7 @@ TEST(NormalPolynomial, NarrowPatchesBesideAPointHaveNoFoot) {
       for (int i = 0; i < 16; ++i) {
         points[i] = patch.points[i] - BezierPatch::Point(from[0], from[1], from[2], 0);
       }
-      return normals.isBesideFeet(points.data(), 1e-14);
+      return normals.hasNoFoot({0, 0, 1, 1}, points.data(), 1e-14);
     };
     // A point with a foot, near the patch or as far as it is long.
     const double height = std::pow(10., random.uniform(-5, 0)) * (random.below(2) ? 1 : -1);

@@ -75,15 +75,19 @@ NormalPolynomial::NormalPolynomial(const BezierPatch& patch, double noise) {
   error_ = kCoefficientRounding * largest_s * largest_t + 2 * noise * (largest_s + largest_t);
 }
 
+void NormalPolynomial::cutTo(const ParameterRectangle& on, Point out[kCount]) const {
+  std::copy(at_, at_ + kCount, out);
+  for (int i = 0; i < kSize; ++i) {
+    cut(out + kSize * i, 1, on.s, on.s + on.s_size);
+  }
+  for (int i = 0; i < kSize; ++i) {
+    cut(out + i, kSize, on.t, on.t + on.t_size);
+  }
+}
+
 NormalPolynomial::Cone NormalPolynomial::cone(const ParameterRectangle& on) const {
-  Point part[kSize * kSize];
-  std::copy(at_, at_ + kSize * kSize, part);
-  for (int i = 0; i < kSize; ++i) {
-    cut(part + kSize * i, 1, on.s, on.s + on.s_size);
-  }
-  for (int i = 0; i < kSize; ++i) {
-    cut(part + i, kSize, on.t, on.t + on.t_size);
-  }
+  Point part[kCount];
+  cutTo(on, part);
   const double unknown = std::numeric_limits<double>::infinity();
   Cone cone{Point::Zero(), 0};
   for (const Point& normal : part) {
@@ -109,66 +113,54 @@ NormalPolynomial::Cone NormalPolynomial::cone(const ParameterRectangle& on) cons
   return cone;
 }
 
-bool NormalPolynomial::isBesideFeet(const Point points[16], double noise) const {
-  const Point one = (points[3] - points[0]) + (points[15] - points[12]),
-              other = (points[12] - points[0]) + (points[15] - points[3]);
-  const Point& side = dot(one, one) > dot(other, other) ? one : other;
-  Point sum = at_[0];
-  for (int i = 1; i < kSize * kSize; ++i) {
-    sum += at_[i];
+bool NormalPolynomial::hasNoFoot(const ParameterRectangle& on, const Point points[16],
+                                 double noise) const {
+  Point normals[kCount];
+  cutTo(on, normals);
+  Point up = Point::Zero();
+  for (const Point& normal : normals) {
+    up += normal;
   }
-  Point across = cross(sum, side);
-  across /= norm(across);
-  Point up = cross(side, across);
   up /= norm(up);
-  double leaning = 0;
-  for (const Point& normal : at_) {
-    const double rise = dot(normal, up) - 2 * error_;
-    if (!(rise > 0)) {
+  double rises[kCount];
+  for (int i = 0; i < kCount; ++i) {
+    rises[i] = dot(normals[i], up) - error_;
+    if (!(rises[i] > error_)) {
       return false;
     }
-    leaning = std::max(leaning, (std::abs(dot(normal, across)) + 2 * error_) / rise);
-  }
-  double along = 0, largest = 0, low = std::numeric_limits<double>::infinity(), high = -low;
-  for (int i = 0; i < 16; ++i) {
-    const double x = dot(points[i], across);
-    low = std::min(low, x);
-    high = std::max(high, x);
-    along = std::max(along, std::abs(dot(points[i], up)));
-    largest = std::max(largest, norm(points[i]));
-  }
-  // At a foot the difference is a multiple of the normal.
-  const double aside = leaning * (along + noise) + noise + kRounding * largest;
-  return low > aside || high < -aside;
-}
-
-bool hasNoFoot(const Point points[16], const NormalPolynomial::Cone& normals, double noise) {
-  if (!(normals.tangent < std::numeric_limits<double>::infinity())) {
-    return false;
   }
   double along = 0, largest = 0;
   for (int i = 0; i < 16; ++i) {
-    along = std::max(along, std::abs(dot(points[i], normals.axis)));
+    along = std::max(along, std::abs(dot(points[i], up)));
     largest = std::max(largest, norm(points[i]));
   }
-  // At a foot the difference is within the cone or its opposite, and this far from the axis.
-  const double aside = normals.tangent * (along + noise) + noise + kRounding * largest;
-  // The patch is a thin parallelogram if its tangents are nearly parallel. It is separated from the
-  // axis in directions perpendicular to its sides.
-  for (const Point& side : {Point((points[3] - points[0]) + (points[15] - points[12])),
-                            Point((points[12] - points[0]) + (points[15] - points[3]))}) {
-    const Point across = cross(normals.axis, side);
-    const double length = norm(across);
-    if (!(length > 0)) {
-      continue;
-    }
+  // The part is a thin parallelogram if its tangents are nearly parallel. Feet are looked for
+  // across its sides and along the longer one: the normals may lean far along it, and hardly
+  // across.
+  const Point one = (points[3] - points[0]) + (points[15] - points[12]),
+              other = (points[12] - points[0]) + (points[15] - points[3]);
+  const Point across = cross(up, one), across_other = cross(up, other);
+  const Point& longer = dot(one, one) > dot(other, other) ? across : across_other;
+  for (const Point& way : {across, across_other, cross(longer, up)}) {
+    const double length = norm(way);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int i = 0; i < 16; ++i) {
-      const double x = dot(points[i], across);
+      const double x = dot(points[i], way);
       low = std::min(low, x);
       high = std::max(high, x);
     }
-    if (low > aside * length || high < -aside * length) {
+    const double least = std::max(low, -high);
+    if (!(least > 0 && length > 0)) {
+      continue;
+    }
+    // At a foot the difference from the searching point is at most so many times as far along the
+    // way as it is along `up`: values of a quotient of polynomials are means of the quotients of
+    // their coefficients if all denominators are positive.
+    double leaning = 0;
+    for (int i = 0; i < kCount; ++i) {
+      leaning = std::max(leaning, (std::abs(dot(normals[i], way)) + error_ * length) / rises[i]);
+    }
+    if (least > leaning * (along + noise) + (noise + kRounding * largest) * length) {
       return true;
     }
   }

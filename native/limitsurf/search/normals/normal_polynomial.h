@@ -22,22 +22,20 @@ class NormalPolynomial {
   /// A cone around the normals on a rectangle of the parameters.
   Cone cone(const ParameterRectangle& on) const;
 
-  /// Whether no point of the whole patch is the foot of a perpendicular, as far as can be told
-  /// across its longer side alone. The normals of a narrow patch may lean far along it, but hardly
-  /// across. `points` and `noise` are as for hasNoFoot().
-  bool isBesideFeet(const BezierPatch::Point points[16], double noise) const;
+  /// Whether no point on a rectangle of the parameters is the foot of a perpendicular: where the
+  /// difference from the searching point is a multiple of the normal. `points` are the Bezier
+  /// points of that part, relative to the searching point, with errors of `noise` at most.
+  bool hasNoFoot(const ParameterRectangle& on, const BezierPatch::Point points[16],
+                 double noise) const;
 
  private:
-  static constexpr int kSize = 6;
+  static constexpr int kSize = 6, kCount = kSize * kSize;
 
-  BezierPatch::Point at_[kSize * kSize];
+  /// The coefficients of the part on a rectangle.
+  void cutTo(const ParameterRectangle& on, BezierPatch::Point out[kCount]) const;
+
+  BezierPatch::Point at_[kCount];
   double error_;  ///< bounds that of each coefficient
 };
-
-/// Whether no point of a patch's part is the foot of a perpendicular: where the difference from the
-/// searching point is parallel to the normal. `points` are the part's Bezier points, relative to
-/// the searching point, with errors of `noise` at most.
-bool hasNoFoot(const BezierPatch::Point points[16], const NormalPolynomial::Cone& normals,
-               double noise);
 
 }  // namespace limitsurf
