@@ -118,7 +118,7 @@ class ClosestSearch {
     return best_.at;
   }
 
-  /// Walks down the tree, nearer boxes first.
+  /// Walks down the tree. At each node the boxes that are likely to be nearest come first.
   void descend() {
     const BoxPoint box_point(best_.from, point_in_boxes_, data_.crowd.has_value());
     NearestFirst open;

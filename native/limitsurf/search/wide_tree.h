@@ -81,7 +81,7 @@ class NearestFirst {
       return;
     }
     // Which child is nearer is hard to predict, so that they are sorted without branches: by
-    // numbers that grow with the key and then the place among the children.
+    // numbers that grow with the nearness and then the place among the children.
     std::uint64_t order[4];
     for (int child = 0; child < 4; ++child) {
       const std::uint64_t number = static_cast<std::uint64_t>(ordered(nearness[child])) << 32 |

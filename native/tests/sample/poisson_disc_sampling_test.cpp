@@ -188,5 +188,72 @@ TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {
   EXPECT_GT(with_cone, all / 8);
 }
 
+/// Unit normals at places of the patches of many steps of a core.
+std::vector<Vector3> normalsOf(const SurfacePatches& patches, SurfacePiece core, Random& random) {
+  constexpr int kSteps = 20, kPlaces = 6;
+  std::vector<Vector3> normals;
+  SurfacePatches::SplitCore split;
+  for (int step = 0; step < kSteps; ++step) {
+    patches.split(core, split);
+    for (const BezierPatch& patch : split.patches) {
+      for (int place = 0; place < kPlaces; ++place) {
+        BezierPatch::Values at;
+        patch.evaluate<1>(random.below(3) / 2., random.uniform(), at);
+        const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
+        if (normal.norm() > 1e-6 * ds.norm() * dt.norm()) normals.push_back(normal.normalized());
+      }
+    }
+    core = split.core;
+  }
+  return normals;
+}
+
+/// Directions nearly perpendicular to some normal, on the side of all the others, are the ones that
+/// too narrow a bound would accept. Cores are whole or have been split before.
+TEST(PoissonDiscSampling, DirectionsThatFaceACoreFaceTheNormalsOfManySteps) {
+  Random random(5);
+  int faced = 0, near = 0;
+  for (const double noise : {0.02, 0.1, 0.3}) {
+    for (const double height : {1., 0.1, 3.}) {
+      Cage cage = perturbed(inTriangles(torus(6, 4)), noise, 1);
+      cage.positions.col(2) *= height;
+      const LimitSurface surface = limitSurface(cage);
+      const SurfacePatches patches(surface);
+      const SettlingCores settling(patches);
+      const double gap = 1e-5 * patches.diagonal();
+      std::vector<SurfacePiece> pieces;
+      for (int tile = 0; tile < patches.tileCount(); ++tile) {
+        pieces.clear();
+        patches.appendPieces(tile, pieces);
+        SurfacePiece core = pieces.front();
+        if (!core.isCore()) continue;
+        SurfacePatches::SplitCore split;
+        for (int step = random.below(4); step > 0; --step) {
+          patches.split(core, split);
+          core = split.core;
+        }
+        const std::vector<Vector3> normals = normalsOf(patches, core, random);
+        Vector3 mean = Vector3::Zero();
+        for (const Vector3& normal : normals) mean += normal;
+        CoreDescent descent(patches, settling, core, gap);
+        const NormalCone cone = CoreDescent(patches, settling, core, gap).cone();
+        for (int i = 0; i < 20; ++i) {
+          const Vector3& normal = normals[random.below(static_cast<int>(normals.size()))];
+          const Vector3 aside = (mean - mean.dot(normal) * normal).normalized();
+          const Vector3 unit = (aside + random.uniform(-0.1, 0.3) * normal).normalized();
+          if (!descent.facesAll(unit) && !cone.isFacedBy(unit)) continue;
+          ++faced;
+          double least = 1;
+          for (const Vector3& other : normals) least = std::min(least, other.dot(unit));
+          ASSERT_GT(least, -1e-9) << noise << " " << height << " " << tile << " " << core.steps;
+          near += least < 0.1;
+        }
+      }
+    }
+  }
+  EXPECT_GT(faced, 2000);
+  EXPECT_GT(near, 200);
+}
+
 }  // namespace
 }  // namespace limitsurf::test

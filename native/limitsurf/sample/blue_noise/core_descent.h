@@ -179,6 +179,7 @@ class CoreDescent {
     are_settled_ = slope <= kSettledSlope;
     if (are_settled_) {
       bounds_.push_back({settling_.normal(), 1, slope + kSlopeRounding});
+      waiting_ = 0;
     }
     return are_settled_;
   }

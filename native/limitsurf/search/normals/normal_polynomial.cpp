@@ -140,8 +140,8 @@ bool NormalPolynomial::hasNoFoot(const ParameterRectangle& on, const Point point
   const Point one = (points[3] - points[0]) + (points[15] - points[12]),
               other = (points[12] - points[0]) + (points[15] - points[3]);
   const Point across = cross(up, one), across_other = cross(up, other);
-  const Point& longer = dot(one, one) > dot(other, other) ? across : across_other;
-  for (const Point& way : {across, across_other, cross(longer, up)}) {
+  const Point& across_longer = dot(one, one) > dot(other, other) ? across : across_other;
+  for (const Point& way : {across, across_other, cross(across_longer, up)}) {
     const double length = norm(way);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int i = 0; i < 16; ++i) {
@@ -160,7 +160,8 @@ bool NormalPolynomial::hasNoFoot(const ParameterRectangle& on, const Point point
     for (int i = 0; i < kCount; ++i) {
       leaning = std::max(leaning, (std::abs(dot(normals[i], way)) + error_ * length) / rises[i]);
     }
-    if (least > leaning * (along + noise) + (noise + kRounding * largest) * length) {
+    const double error = noise + kRounding * largest;
+    if (least > leaning * (along + error) + error * length) {
       return true;
     }
   }

@@ -34,11 +34,11 @@ class FixedRows::Builder {
 
   void add(Row row, const TileLocation& at) {
     if (isSingle(table_, at)) {
-      Single& single = out_.single;
-      single.rows.push_back(row);
-      single.tiles.push_back(at.tile.index);
-      single.u.push_back(at.u);
-      single.v.push_back(at.v);
+      Single& on_tile = out_.single;
+      on_tile.rows.push_back(row);
+      on_tile.tiles.push_back(at.tile.index);
+      on_tile.u.push_back(at.u);
+      on_tile.v.push_back(at.v);
     } else if (hasFewWeights(at)) {
       addWeights(row);
     } else {
