@@ -8,6 +8,7 @@
 #include "limitsurf/search/foot_iteration.h"
 #include "limitsurf/search/normals/local_minimum.h"
 #include "limitsurf/search/normals/normal_polynomial.h"
+#include "limitsurf/search/patch_sides.h"
 #include "limitsurf/search/squared_distance.h"
 
 namespace limitsurf {
@@ -169,12 +170,13 @@ class PatchSearch {
   }
 
   /// Whether the patch is much longer than wide. Both of its parameters may lead along it.
-  bool isNarrow() const {
-    const BezierPatch::Point* p = relative_.points;
-    const BezierPatch::Point s = (p[3] - p[0]) + (p[15] - p[12]),
-                             t = (p[12] - p[0]) + (p[15] - p[3]);
-    const double ss = dot(s, s), tt = dot(t, t), st = dot(s, t), longer = std::max(ss, tt);
-    return ss * tt - st * st < kNarrow * kNarrow * longer * longer;
+  bool isNarrow() {
+    if (!is_narrow_) {
+      const BezierPatch::Point s = sidesAlongS(relative_.points), t = sidesAlongT(relative_.points);
+      const double ss = dot(s, s), tt = dot(t, t), st = dot(s, t), longer = std::max(ss, tt);
+      is_narrow_ = ss * tt - st * st < kNarrow * kNarrow * longer * longer;
+    }
+    return *is_narrow_;
   }
 
   /// Whether the sheet ends at no side of the cell, or the distance falls along each such side
@@ -200,19 +202,15 @@ class PatchSearch {
     if (!hasNoFootOnBorders(f, cell)) {
       return false;
     }
+    if (!normals_) {
+      normals_.emplace(patch_, best_.tolerance / 10);
+    }
     BezierPatch::Point points[16];
     pointsOf(cell, points);
     for (BezierPatch::Point& point : points) {
       point -= away_;
     }
-    return normals().hasNoFoot(cell, points, best_.tolerance);
-  }
-
-  const NormalPolynomial& normals() {
-    if (!normals_) {
-      normals_.emplace(patch_, best_.tolerance / 10);
-    }
-    return *normals_;
+    return normals_->hasNoFoot(cell, points, best_.tolerance);
   }
 
   /// Whether a plane beside the searching point, no nearer to it than the closest point so far, has
@@ -439,7 +437,7 @@ class PatchSearch {
   double least_;          // a lower bound of the squared distance less the square of the range
   int cells_ = 0;
   std::optional<NormalPolynomial> normals_;
-  std::optional<bool> is_line_;
+  std::optional<bool> is_line_, is_narrow_;
 };
 
 }  // namespace

@@ -24,7 +24,9 @@ double trialsPerPoint(const Cage& cage) {
   const double expected = 2. * static_cast<double>(cage.faces.size());
   const double radius = std::sqrt(0.7 * surfaceArea(surface) / expected);
   const DensityField everywhere;
-  PoissonDiscSampling sampling(patches, box, everywhere, radius, AreaSampler::kGap, expected, 1, 0);
+  const SettlingCores settling(patches);
+  PoissonDiscSampling sampling(patches, settling, box, everywhere, radius, AreaSampler::kGap,
+                               expected, 1, 0);
   const std::size_t points = sampling.run([](std::size_t) {}).at.size();
   return static_cast<double>(sampling.trials()) / static_cast<double>(points);
 }
@@ -143,6 +145,17 @@ TEST(PoissonDiscSampling, TakesFewerTrialsOnSliversWithLargeFirstCells) {
   EXPECT_LE(trialsPerPoint(wavy(pole(512))), 345);
 }
 
+/// The core of each tile that has one.
+std::vector<SurfacePiece> coresOf(const SurfacePatches& patches) {
+  std::vector<SurfacePiece> pieces, cores;
+  for (int tile = 0; tile < patches.tileCount(); ++tile) {
+    pieces.clear();
+    patches.appendPieces(tile, pieces);
+    if (pieces.front().isCore()) cores.push_back(pieces.front());
+  }
+  return cores;
+}
+
 TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {
   Random random(4);
   int with_cone = 0, all = 0;
@@ -152,12 +165,8 @@ TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {
     const SurfacePatches patches(surface);
     const SettlingCores settling(patches);
     const double gap = 1e-4 * patches.diagonal();
-    std::vector<SurfacePiece> pieces;
-    for (int tile = 0; tile < patches.tileCount(); ++tile) {
-      pieces.clear();
-      patches.appendPieces(tile, pieces);
-      if (!pieces.front().isCore()) continue;
-      CoreDescent descent(patches, settling, pieces.front(), gap);
+    for (const SurfacePiece& core : coresOf(patches)) {
+      CoreDescent descent(patches, settling, core, gap);
       const double first_reach = descent.reach();
       const NormalCone cone = descent.cone();
       EXPECT_LE(descent.reach(), first_reach * (1 + 1e-12));
@@ -167,7 +176,7 @@ TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {
       const bool faced = cone.isFacedBy(unit) || cone.isFacedBy(unit = -unit);
       with_cone += faced;
       EXPECT_TRUE(!faced || descent.facesAll(unit));
-      const FaceRectangle on = patches.rectangle(pieces.front());
+      const FaceRectangle on = patches.rectangle(core);
       std::vector<Location> at;
       for (int i = 0; i < 24; ++i) {
         const double size = std::ldexp(1., -(i % 6));
@@ -179,7 +188,7 @@ TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {
         EXPECT_LE((position - descent.middle()).norm(),
                   descent.reach() + kPositionError * patches.diagonal());
         if (faced && std::isfinite(normal[0]) &&
-            (position - patches.coreVertex(pieces.front())).norm() > gap) {
+            (position - patches.coreVertex(core)).norm() > gap) {
           EXPECT_GT(normal.dot(unit), 0);
         }
       }
@@ -221,12 +230,7 @@ TEST(PoissonDiscSampling, DirectionsThatFaceACoreFaceTheNormalsOfManySteps) {
       const SurfacePatches patches(surface);
       const SettlingCores settling(patches);
       const double gap = 1e-5 * patches.diagonal();
-      std::vector<SurfacePiece> pieces;
-      for (int tile = 0; tile < patches.tileCount(); ++tile) {
-        pieces.clear();
-        patches.appendPieces(tile, pieces);
-        SurfacePiece core = pieces.front();
-        if (!core.isCore()) continue;
+      for (SurfacePiece core : coresOf(patches)) {
         SurfacePatches::SplitCore split;
         for (int step = random.below(4); step > 0; --step) {
           patches.split(core, split);
@@ -245,7 +249,8 @@ TEST(PoissonDiscSampling, DirectionsThatFaceACoreFaceTheNormalsOfManySteps) {
           ++faced;
           double least = 1;
           for (const Vector3& other : normals) least = std::min(least, other.dot(unit));
-          ASSERT_GT(least, -1e-9) << noise << " " << height << " " << tile << " " << core.steps;
+          ASSERT_GT(least, -1e-9) << noise << " " << height << " " << core.tile << " "
+                                  << core.steps;
           near += least < 0.1;
         }
       }

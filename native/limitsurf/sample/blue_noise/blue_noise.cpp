@@ -62,6 +62,7 @@ class BlueNoiseMaker {
                  const BlueNoiseOptions& options, int threads, const Progress& progress)
       : surface_(surface),
         patches_(patches),
+        settling_(patches),
         cells_(cells),
         has_surface_(has_surface),
         options_(options),
@@ -236,8 +237,9 @@ class BlueNoiseMaker {
   }
 
   NoisePoints sampled(double radius) {
-    PoissonDiscSampling sampling(patches_, box_, density_, radius * (1 + kRadiusRounding) + margin_,
-                                 AreaSampler::kGap, expected_, options_.seed, threads_);
+    PoissonDiscSampling sampling(patches_, settling_, box_, density_,
+                                 radius * (1 + kRadiusRounding) + margin_, AreaSampler::kGap,
+                                 expected_, options_.seed, threads_);
     NoisePoints points = sampling.run([&](std::size_t accepted) {
       done_ = std::max(done_, std::min(static_cast<double>(accepted) / expected_, 1.));
       if (progress_) {
@@ -279,6 +281,7 @@ class BlueNoiseMaker {
 
   const LimitSurface& surface_;
   const SurfacePatches& patches_;
+  const SettlingCores settling_;
   const std::vector<AreaCell>& cells_;
   const std::vector<bool>& has_surface_;
   const BlueNoiseOptions& options_;

@@ -18,6 +18,7 @@ namespace limitsurf {
 /// The surface that is cut into cells, and the radii of discs on it.
 struct NoiseSurface {
   const SurfacePatches& patches;
+  const SettlingCores& settling;
   NoiseRadii radii;
   double gap;               ///< cells smaller than so many radii are discarded
   double most_first_cells;  ///< more of them are refused
@@ -25,7 +26,6 @@ struct NoiseSurface {
   /// Of the one cell of each tile that is a core, once it is needed. Only what tries this cell
   /// writes to it.
   std::vector<CoreExtent> cores;
-  SettlingCores settling{patches};
 };
 
 /// Splits cells, and tells which of them discs cover. It keeps the patch of the last cell, because

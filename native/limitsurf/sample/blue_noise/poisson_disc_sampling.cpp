@@ -22,12 +22,17 @@ constexpr double kUsualExcess = 1.05, kMostInAdvance = 1 << 22;
 
 }  // namespace
 
-PoissonDiscSampling::PoissonDiscSampling(const SurfacePatches& patches, const Box& box,
+PoissonDiscSampling::PoissonDiscSampling(const SurfacePatches& patches,
+                                         const SettlingCores& settling, const Box& box,
                                          const DensityField& density, double radius, double gap,
                                          double expected, std::uint64_t seed, int threads)
-    : surface_{patches, NoiseRadii(density, radius, patches.diagonal()),
-               gap,     kMostCellsPerPoint * expected + kSpareCells,
-               {0},     std::vector<CoreExtent>(static_cast<std::size_t>(patches.tileCount()))},
+    : surface_{patches,
+               settling,
+               NoiseRadii(density, radius, patches.diagonal()),
+               gap,
+               kMostCellsPerPoint * expected + kSpareCells,
+               {0},
+               std::vector<CoreExtent>(static_cast<std::size_t>(patches.tileCount()))},
       key_(keyOf(seed)),
       threads_(threads),
       accepted_(box, surface_.radii.smallest(), surface_.radii.largest()),

@@ -34,8 +34,9 @@ class PoissonDiscSampling {
   ///
   /// Cells are rectangles of (u, v). Where the parameters are sheared so strongly that there would
   /// be far more cells than points, run() throws std::invalid_argument.
-  PoissonDiscSampling(const SurfacePatches& patches, const Box& box, const DensityField& density,
-                      double radius, double gap, double expected, std::uint64_t seed, int threads);
+  PoissonDiscSampling(const SurfacePatches& patches, const SettlingCores& settling, const Box& box,
+                      const DensityField& density, double radius, double gap, double expected,
+                      std::uint64_t seed, int threads);
 
   /// Accepts points until there is no room for another one, and returns them. Calls `report` from
   /// time to time with the number of points accepted so far. May be called once.

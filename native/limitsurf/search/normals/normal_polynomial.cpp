@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "limitsurf/search/patch_sides.h"
+
 namespace limitsurf {
 namespace {
 
@@ -137,8 +139,7 @@ bool NormalPolynomial::hasNoFoot(const ParameterRectangle& on, const Point point
   // The part is a thin parallelogram if its tangents are nearly parallel. Feet are looked for
   // across its sides and along the longer one: the normals may lean far along it, and hardly
   // across.
-  const Point one = (points[3] - points[0]) + (points[15] - points[12]),
-              other = (points[12] - points[0]) + (points[15] - points[3]);
+  const Point one = sidesAlongS(points), other = sidesAlongT(points);
   const Point across = cross(up, one), across_other = cross(up, other);
   const Point& across_longer = dot(one, one) > dot(other, other) ? across : across_other;
   for (const Point& way : {across, across_other, cross(across_longer, up)}) {

@@ -7,19 +7,14 @@
 #include <limits>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/search/patch_sides.h"
 #include "limitsurf/search/tree/box_points.h"
 
 namespace limitsurf {
 namespace {
 
-Vector3 sideS(const BezierPatch& patch) {
-  const BezierPatch::Point* p = patch.points;
-  return ((p[3] - p[0]) + (p[15] - p[12])).head<3>();
-}
-Vector3 sideT(const BezierPatch& patch) {
-  const BezierPatch::Point* p = patch.points;
-  return ((p[12] - p[0]) + (p[15] - p[3])).head<3>();
-}
+Vector3 sideS(const BezierPatch& patch) { return sidesAlongS(patch.points).head<3>(); }
+Vector3 sideT(const BezierPatch& patch) { return sidesAlongT(patch.points).head<3>(); }
 
 /// The area of the quadrilateral between the corners, if it is flat.
 double cornerArea(const BezierPatch& patch) {
