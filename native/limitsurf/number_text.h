@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdlib>
+#include <cmath>
 #include <limits>
 #include <locale>
 #include <sstream>
@@ -9,9 +9,13 @@
 
 namespace limitsurf {
 
-/// The number as somebody would write it: with the fewest digits that tell it from all others.
+/// The number as somebody would write it: with the fewest digits that tell it from all others. NaN
+/// has no sign.
 template <typename Real>
 std::string numberText(Real value) {
+  if (std::isnan(value)) {
+    return "nan";
+  }
   using Limits = std::numeric_limits<Real>;
   std::string written;
   for (int digits = Limits::digits10; digits <= Limits::max_digits10; ++digits) {

@@ -117,6 +117,12 @@ def test_long_lines_end_in_whole_characters():
             "positions: vertex 0 has position (nan, nan, nan); positions must be finite",
         ),
         (
+            lambda: ls.ControlMesh.from_faces(
+                np.full_like(SQUARES, np.copysign(np.nan, -1)), FACES
+            ),
+            "positions: vertex 0 has position (nan, nan, nan); positions must be finite",
+        ),
+        (
             lambda: ls.ControlMesh(SQUARES[:15], SIZES, VERTICES),
             "face_vertices: face 8 names vertex 15, but positions has 15 rows",
         ),
