@@ -28,6 +28,9 @@ constexpr double kSlowest = 0.5, kUsual = 0.25;
 /// A number in double precision that is multiplied with this does not grow when it is rounded to
 /// single precision.
 constexpr double kRoundedDown = 1 - 0x1p-22;
+/// The points of a patch are right to this part of the surface's diagonal, products to this part of
+/// themselves. More than what was seen, and less than kPositionError.
+constexpr double kPointRounding = 0x1p-48;
 /// The number of tiles that one task cuts into cells.
 constexpr std::size_t kTilesPerTask = 64;
 
@@ -234,7 +237,52 @@ class CellMaker {
   std::vector<std::size_t> counts_;                      // of the cells of the piece before
 };
 
+/// The largest step between control points along s or t.
+double longestStep(const BezierPatch& patch, bool along_t) {
+  const int step = along_t ? 4 : 1, across = along_t ? 1 : 4;
+  double longest = 0;
+  for (int line = 0; line < 4; ++line) {
+    const BezierPatch::Point* p = patch.points + across * line;
+    for (int i = 0; i < 3; ++i) {
+      longest = std::max(longest, length(BezierPatch::Point(p[step * (i + 1)] - p[step * i])));
+    }
+  }
+  return longest;
+}
+
+/// `diagonal`: of the whole surface.
+bool hasArea(const BezierPatch& patch, double diagonal) {
+  const double along_s = 3 * longestStep(patch, false), along_t = 3 * longestStep(patch, true);
+  return AreaForm(patch).bound() >
+         kPointRounding * (diagonal * (along_s + along_t) + along_s * along_t);
+}
+
 }  // namespace
+
+bool hasArea(const SurfacePatches& patches) {
+  const double diagonal = patches.diagonal();
+  std::vector<SurfacePiece> pieces;
+  SurfacePatches::SplitCore split;
+  for (int tile = 0; tile < patches.tileCount(); ++tile) {
+    pieces.clear();
+    patches.appendPieces(tile, pieces);
+    for (const SurfacePiece& piece : pieces) {
+      if (!piece.isCore()) {
+        if (hasArea(patches.patch(piece), diagonal)) {
+          return true;
+        }
+        continue;
+      }
+      patches.splitPatches(piece, split);
+      for (const BezierPatch& patch : split.patches) {
+        if (hasArea(patch, diagonal)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
 
 std::vector<AreaCell> areaCells(const SurfacePatches& patches, int threads) {
   const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());

@@ -33,6 +33,32 @@ Cage halved(const Cage& quads) {
   return triangles;
 }
 
+/// Otherwise what is left of the area, which is rounding errors, would be cut into ever more cells.
+TEST(AreaCells, SurfacesOnALineHaveNoArea) {
+  const auto hasAreaInItsOwnUnit = [](const Cage& cage) {
+    const LimitSurface surface = limitSurface(cage);
+    return hasArea(SurfacePatches(surface, 0, PatchUnit::own));
+  };
+  const Eigen::RowVector3d along(0.3, 0.7, 0.11), across(0.7, -0.3, 0.02);
+  Random random(5);
+  for (const Cage& quads : {grid(5, 5), cube(), pole(12)}) {
+    for (const bool in_triangles : {false, true}) {
+      Cage cage = in_triangles && quads.faces[0].size() == 4 ? halved(quads) : quads;
+      Cage thin = cage;
+      for (Eigen::Index vertex = 0; vertex < cage.positions.rows(); ++vertex) {
+        cage.positions.row(vertex) = random.uniform() * along;
+        thin.positions.row(vertex) = cage.positions.row(vertex) + 1e-11 * random.uniform() * across;
+      }
+      EXPECT_FALSE(hasAreaInItsOwnUnit(cage));
+      EXPECT_TRUE(hasAreaInItsOwnUnit(thin));
+      Cage small = quads;  // beside a vertex that makes all of its faces small
+      small.positions *= 1e-9;
+      small.positions.row(0) << 1, 0, 0;
+      EXPECT_TRUE(hasAreaInItsOwnUnit(small));
+    }
+  }
+}
+
 TEST(AreaCells, AreasAreWithinTheirBounds) {
   Random random(3);
   NamedCages cages = everyNth(queryCages(), 2);
