@@ -122,7 +122,7 @@ def _complaint(kind: str, allowed: tuple[int, int], value: object) -> str | None
         wanted = kind.removeprefix(NATIVE)
         if wanted not in [base.__name__ for base in type(value).__mro__]:
             return f"{'an' if wanted[0] in 'AEIOU' else 'a'} {wanted}"
-    if kind == "str" and not isinstance(value, str | bytes):
+    if kind == "str" and not isinstance(value, str):
         return "a string"
     if kind == "bool" and not isinstance(value, bool | np.bool_):
         return "True or False"

@@ -9,6 +9,7 @@
 #include "docstrings.h"
 #include "elements.h"
 #include "locks/signals.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -54,9 +55,8 @@ std::vector<double> sharpnessValues(const py::object& object, const char* name) 
 }
 
 MeshOptions meshOptions(const py::object& edge_sharpness, const py::object& vertex_sharpness,
-                        const std::string& boundary, const std::string& creasing,
-                        const std::string& triangles, const std::string& scheme,
-                        const py::object& holes) {
+                        const Text& boundary, const Text& creasing, const Text& triangles,
+                        const Text& scheme, const py::object& holes) {
   MeshOptions options;
   options.boundary = choice(boundary, "boundary", kBoundaries);
   options.creasing = choice(creasing, "creasing", kCreasings);
@@ -197,9 +197,9 @@ void bindConstructors(MeshClass& type) {
   using namespace py::literals;
   type.def(py::init([](const py::object& positions, const py::object& face_sizes,
                        const py::object& face_vertices, const py::object& edge_sharpness,
-                       const py::object& vertex_sharpness, const std::string& boundary,
-                       const std::string& creasing, const std::string& triangles,
-                       const std::string& scheme, const py::object& holes) {
+                       const py::object& vertex_sharpness, const Text& boundary,
+                       const Text& creasing, const Text& triangles, const Text& scheme,
+                       const py::object& holes) {
              return makeMesh(positions, face_sizes, face_vertices,
                              meshOptions(edge_sharpness, vertex_sharpness, boundary, creasing,
                                          triangles, scheme, holes));
@@ -210,9 +210,8 @@ void bindConstructors(MeshClass& type) {
       .def_static(
           "from_faces",
           [](const py::object& positions, const py::object& faces, const py::object& edge_sharpness,
-             const py::object& vertex_sharpness, const std::string& boundary,
-             const std::string& creasing, const std::string& triangles, const std::string& scheme,
-             const py::object& holes) {
+             const py::object& vertex_sharpness, const Text& boundary, const Text& creasing,
+             const Text& triangles, const Text& scheme, const py::object& holes) {
             const auto [sizes, vertices] = flattened(faces);
             const MeshOptions options = meshOptions(edge_sharpness, vertex_sharpness, boundary,
                                                     creasing, triangles, scheme, holes);
@@ -266,9 +265,9 @@ void bindOptions(MeshClass& type) {
           "int64: the faces that are holes and have no surface.");
 }
 
-std::string ruleOfState(const py::handle& part) {
+Text ruleOfState(const py::handle& part) {
   try {
-    return py::cast<std::string>(part);
+    return py::cast<Text>(part);
   } catch (const py::cast_error&) {
     throw py::value_error("no state of a ControlMesh: the name of a rule is no text");
   }

@@ -14,6 +14,7 @@
 #include "limitsurf/displace/displacement.h"
 #include "limitsurf/search/checks.h"
 #include "progress.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -95,8 +96,7 @@ py::object vectorDisplacement(const SharedSurface& base, const SharedSurface& ta
 
 py::object scalarDisplacement(const SharedSurface& base, const SharedSurface& target,
                               const py::object& face, const py::object& uv, double max_distance,
-                              const std::string& direction, int threads,
-                              const py::object& progress) {
+                              const Text& direction, int threads, const py::object& progress) {
   checkThreads(threads);
   const ProgressReport report(progress);
   const CheckedLocations at = locationsOn(base.surface(), face, uv);

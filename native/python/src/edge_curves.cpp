@@ -16,6 +16,7 @@
 #include "limitsurf/curves/scatter_along.h"
 #include "numbers.h"
 #include "progress.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -61,7 +62,7 @@ std::unique_ptr<BoundEdgeCurves> makeCurves(const SharedSurface& shared, const p
   std::vector<std::pair<std::int64_t, std::int64_t>> given;
   if (py::isinstance<py::str>(edges)) {
     chosen =
-        choice<EdgeChoice>(edges.cast<std::string>(), "edges",
+        choice<EdgeChoice>(edges.cast<Text>(), "edges",
                            {{"boundary", EdgeChoice::boundary}, {"creases", EdgeChoice::creases}});
   } else {
     given = pairsOf(edges, "edges");
@@ -80,7 +81,7 @@ py::object along(const AlongCurves& found) {
 }
 
 py::object curvesAt(const BoundEdgeCurves& self, const py::object& curve, const py::object& arc,
-                    const std::string& side, int threads) {
+                    const Text& side, int threads) {
   checkThreads(threads);
   const CurveSide on = sideOf(side);
   const Doubles arcs = doubles(arc, "arc");
@@ -110,7 +111,7 @@ py::object curvesAt(const BoundEdgeCurves& self, const py::object& curve, const 
 py::object scatterAlong(const SharedSurface& shared, const BoundEdgeCurves& curves,
                         std::optional<std::int64_t> count, std::optional<double> spacing,
                         double jitter, std::uint64_t seed, std::optional<double> phase,
-                        const std::string& side, int rows, double row_distance, int threads,
+                        const Text& side, int rows, double row_distance, int threads,
                         const py::object& progress) {
   checkThreads(threads);
   AlongOptions options;

@@ -10,6 +10,7 @@
 #include "limitsurf/large_pages.h"
 #include "result_memory.h"
 #include "shared_surface.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -94,8 +95,7 @@ py::object placedFrames(const SharedSurface& shared, const py::object& face, con
 }
 
 py::object curvature(const SharedSurface& shared, const py::object& face, const py::object& uv,
-                     const std::string& irregular, double radius, int threads,
-                     const py::object& dtype) {
+                     const Text& irregular, double radius, int threads, const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
   const IrregularRule rule = choice<IrregularRule>(

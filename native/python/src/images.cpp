@@ -16,6 +16,7 @@
 #include "progress.h"
 #include "projection_docstrings.h"
 #include "result_memory.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -35,7 +36,7 @@ const Choices<BlendMode> kBlendModes = {
                               expected);
 }
 
-std::unique_ptr<FilteredImage> makeImage(const py::object& pixels, const std::string& extension,
+std::unique_ptr<FilteredImage> makeImage(const py::object& pixels, const Text& extension,
                                          Flag premultiplied, int threads) {
   const Extension beyond = choice(extension, "extension", kExtensions);
   const Floats array = floatsInRange(maskAsNumbers(pixels), "pixels");
@@ -118,7 +119,7 @@ Colours pixelRows(const py::object& object, const char* name) {
 }
 
 py::object blendOver(const py::object& below, const py::object& above, const py::object& weight,
-                     const std::string& mode, Flag premultiplied) {
+                     const Text& mode, Flag premultiplied) {
   const BlendMode blend = choice(mode, "mode", kBlendModes);
   const Colours lower = pixelRows(below, "below"), upper = pixelRows(above, "above");
   const Doubles weights = doubles(maskAsNumbers(weight), "weight");

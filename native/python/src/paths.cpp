@@ -11,6 +11,7 @@
 #include "limitsurf/path/path_smoothing.h"
 #include "limitsurf/row_check.h"
 #include "shared_surface.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -180,7 +181,7 @@ FitKind kindOf(const std::string& name) {
 }
 
 py::object fitPath(const SharedSurface& shared, const py::object& face, const py::object& uv,
-                   double tolerance, const std::string& kind, Flag closed, double offset,
+                   double tolerance, const Text& kind, Flag closed, double offset,
                    double corner_angle, const py::object& values, double value_tolerance,
                    int threads) {
   checkThreads(threads);

@@ -15,6 +15,7 @@
 #include "progress.h"
 #include "projection_docstrings.h"
 #include "surface_data.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -109,9 +110,9 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
 py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv_map,
                                const py::object& face, const py::object& uv,
                                const SharedSurface& source, const SharedData& source_map,
-                               const py::object& texel, double max_distance,
-                               const std::string& direction, const py::object& transform,
-                               const py::object& world, int threads, const py::object& progress) {
+                               const py::object& texel, double max_distance, const Text& direction,
+                               const py::object& transform, const py::object& world, int threads,
+                               const py::object& progress) {
   checkThreads(threads);
   NormalProjectOptions options;
   options.max_distance = max_distance;

@@ -12,6 +12,7 @@
 #include "limitsurf/error.h"
 #include "result_memory.h"
 #include "shared_surface.h"
+#include "text.h"
 
 namespace limitsurf::python {
 namespace {
@@ -83,7 +84,7 @@ void setValues(SharedData& shared, const py::object& values, int threads) {
 }
 
 std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::object& values,
-                                        const py::object& indices, const std::string& interpolation,
+                                        const py::object& indices, const Text& interpolation,
                                         int threads) {
   checkThreads(threads);
   const Interpolation rule = interpolationOf(interpolation);

@@ -86,6 +86,37 @@ def test_long_lines_end_in_whole_characters():
         assert "...'; expected 'boundary'" in str(raised.value)
 
 
+#: Not even UTF-8 can hold it.
+SURROGATE = "\ud800"
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        (lambda text: ls.ControlMesh(SQUARES, SIZES, VERTICES, boundary=text), "boundary"),
+        (lambda text: ls.ControlMesh.from_faces(SQUARES, FACES, creasing=text), "creasing"),
+        (lambda text: ls.ControlMesh.from_faces(SQUARES, FACES, triangles=text), "triangles"),
+        (lambda text: ls.ControlMesh.from_faces(SQUARES, FACES, scheme=text), "scheme"),
+        (lambda text: SURFACE.edge_curves(text), "edges"),
+        (lambda text: CURVES.at([0], [0.0], side=text), "side"),
+        (lambda text: SURFACE.scatter_along(CURVES, 3, side=text), "side"),
+        (lambda text: SURFACE.face_varying(SQUARES, VERTICES, text), "interpolation"),
+        (lambda text: SURFACE.curvature(0, [[0.5, 0.5]], irregular=text), "irregular"),
+        (lambda text: SURFACE.fit_path([0, 0], [[0.1, 0.5], [0.9, 0.5]], 0.1, kind=text), "kind"),
+        (lambda text: ls.FilteredImage(np.zeros((2, 2, 3)), extension=text), "extension"),
+        (lambda text: ls.blend_over([[0] * 4], [[0] * 4], [1], mode=text), "mode"),
+    ],
+)
+def test_texts_that_are_no_choice(call, name):
+    with pytest.raises(ValueError, match=rf"^{name} is '\\ud800'; expected '"):
+        call(SURROGATE)
+    for value, written in ((b"none", "b'none'"), (3, "3"), (None, "None")):
+        if name != "edges":  # which may be an array instead
+            with pytest.raises(TypeError) as raised:
+                call(value)
+            assert str(raised.value) == f"{name} is {written}; expected a string"
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
