@@ -125,5 +125,37 @@ TEST(ClosestSqueezed, PlacesOnNormalsAreFound) {
   EXPECT_GT(searches, 1000);
 }
 
+/// All patches that lie along the line beside a point are equally close to it, but for rounding:
+/// each is left out as a whole instead of being divided along the curve of its closest places.
+TEST(ClosestSqueezed, FewCellsOfALineOfManyFacesAreSearched) {
+  constexpr int kCount = 40;
+  constexpr int kMostCells[] = {500, 2500};  // of quads and of triangles: twice what they need
+  const Vector3 along(0.3, 0.7, 0.11);
+  Random random(6);
+  Cage quads = fullGrid(15, 15);
+  for (int v = 0; v < quads.vertexCount(); ++v) {
+    quads.positions.row(v) = random.uniform() * along.transpose();
+  }
+  for (const bool triangles : {false, true}) {
+    const LimitSurface surface = limitSurface(triangles ? inTriangles(quads) : quads);
+    for (const double aside : {1e-7, 1e-5, 1e-3}) {
+      Points points(kCount, 3);
+      Eigen::VectorXd distances(kCount);
+      for (int i = 0; i < kCount; ++i) {
+        // Within the part of the line that the surface covers for certain.
+        const Vector3 away = aside * random.vector(1).cross(along);
+        points.row(i) = (random.uniform(0.4, 0.6) * along + away).transpose();
+        distances[i] = away.norm();
+      }
+      std::int64_t cells = 0;
+      ClosestOptions options;
+      options.cells = &cells;
+      const Hits hits = SurfaceSearch(surface).closest(points, options);
+      EXPECT_LE((hits.distance - distances).cwiseAbs().maxCoeff(), kSearchError) << aside;
+      EXPECT_LE(cells, kMostCells[triangles] * kCount) << aside;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limitsurf::test
