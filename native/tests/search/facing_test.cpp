@@ -44,6 +44,34 @@ double steepestFall(const LimitSurface& surface, const Vector3& point, const Loc
   return fall;
 }
 
+TEST(Facing, PlacesWithoutANormalAreNoResult) {
+  // Both sides of a triangle: they meet in a fold, along which du x dv vanishes.
+  Cage cage;
+  cage.positions.resize(3, 3);
+  cage.positions << 1, 0, -1, -2, 1, 0, 0, -1, 0;
+  cage.faces = {{0, 1, 2}, {2, 1, 0}};
+  const LimitSurface surface = limitSurface(cage);
+  constexpr int kCount = 5000;
+  Random random(1);
+  Points points(kCount, 3), directions(kCount, 3);
+  for (int i = 0; i < kCount; ++i) {
+    points.row(i) = random.vector(2).transpose();
+    directions.row(i) = random.vector(1).transpose();
+  }
+  ClosestOptions options;
+  options.facing = directions;
+  options.max_angle = 1;
+  const Hits hits = SurfaceSearch(surface).closest(points, options);
+  int found = 0;
+  for (int i = 0; i < kCount; ++i) {
+    if (hits.at[static_cast<std::size_t>(i)].face < 0) continue;
+    ++found;
+    const Vector3 normal = hits.normal.row(i), direction = directions.row(i);
+    EXPECT_GE(normal.dot(direction), (std::cos(1.) - 1e-9) * direction.norm()) << i;
+  }
+  EXPECT_GT(found, 0);
+}
+
 TEST(Facing, AVertexWhereTheDistanceFallsIsNoResult) {
   // The normals of the vertices face the right way, and no place where the distance has a minimum.
   const LimitSurface surface = limitSurface(cube());

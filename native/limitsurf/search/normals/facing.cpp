@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace limitsurf {
 namespace {
@@ -10,6 +11,9 @@ namespace {
 /// If the sine of the angle between the tangents is below this, rounding may turn their cross
 /// product too far, and the normal that evaluate() gives decides.
 constexpr double kParallel = 1e-3;
+/// Nor may the cross product be below this part of the longer tangent times the patch's size, as
+/// next to a fold: evaluate() gives no normal where it is below about 2^-30 (kMostNormalCondition).
+constexpr double kVanishing = 0x1p-24;
 /// The cross products of tangents of a patch that is collapsed onto a line are at most this part of
 /// the square of the longest tangent: 64 roundings. There evaluate() gives no normal.
 constexpr double kLine = 0x1p-46;
@@ -17,6 +21,15 @@ constexpr double kLine = 0x1p-46;
 /// that the location of a place may be another place, which has another normal at the tip of a
 /// cone.
 constexpr double kSmall = 0x1p-40;
+
+/// The largest distance of a control point from the first one.
+double sizeOf(const BezierPatch& patch) {
+  double square = 0;
+  for (const BezierPatch::Point& point : patch.points) {
+    square = std::max(square, (point - patch.points[0]).head<3>().square().sum());
+  }
+  return std::sqrt(square);
+}
 
 }  // namespace
 
@@ -28,7 +41,10 @@ bool Facing::accepts(const BezierPatch& patch, double s, double t, const Vector3
   }
   // A patch has the orientation of its face, up to rotations by right angles.
   const Vector3 normal = ds.cross(dt);
-  return normal.norm() > kParallel * ds.norm() * dt.norm() ? accepts(normal) : accepts(at);
+  const double length = normal.norm(), s_length = ds.norm(), t_length = dt.norm();
+  const bool is_certain = length > kParallel * s_length * t_length &&
+                          length > kVanishing * std::max(s_length, t_length) * sizeOf(patch);
+  return is_certain ? accepts(normal) : accepts(at);
 }
 
 bool Facing::excludesLine(const BezierPatch& patch) const {
