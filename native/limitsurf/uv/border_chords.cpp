@@ -24,35 +24,37 @@ BorderChords::BorderChords(const UvBorders& borders, const PlaneFrame& frame, co
   const Box2 box{Point2(image.x0, image.y0), Point2(image.x1, image.y1)};
   borders.appendCurves(frame, box, margin, kMarginError, curves_);
   const Box2 around = box.grown(Point2::Constant(margin + BorderChords::kSlack));
-  std::vector<Chord> all;
+  InterruptionStride stride;
   for (std::size_t i = 0; i < curves_.size(); ++i) {
-    flatten(curves_[i].points, static_cast<int>(i), 0, 1, around, all);
+    flatten(curves_[i].points, static_cast<int>(i), 0, 1, around, stride);
   }
   const auto forEachBand = [&](const auto& body) {
-    for (const Chord& chord : all) {
+    for (std::size_t i = 0; i < chords_.size(); ++i) {
+      stride.step();
       Box2 chord_box;
-      chord_box.include(chord.begin);
-      chord_box.include(chord.end);
+      chord_box.include(chords_[i].begin);
+      chord_box.include(chords_[i].end);
       const Lattice near =
           image.within(chord_box.grown(Point2::Constant(margin + BorderChords::kSlack)));
       if (!near.empty()) {
         for (int band = near.y0 / rows; band <= near.y1 / rows; ++band) {
-          body(chord, static_cast<std::size_t>(band));
+          body(static_cast<int>(i), static_cast<std::size_t>(band));
         }
       }
     }
   };
   begins_.assign(static_cast<std::size_t>((image.y1 + rows) / rows) + 2, 0);
-  forEachBand([&](const Chord&, std::size_t band) { ++begins_[band + 2]; });
+  forEachBand([&](int, std::size_t band) { ++begins_[band + 2]; });
   for (std::size_t band = 2; band < begins_.size(); ++band) {
     begins_[band] += begins_[band - 1];
   }
-  chords_.resize(begins_.back());
-  forEachBand([&](const Chord& chord, std::size_t band) { chords_[begins_[band + 1]++] = chord; });
+  by_band_.resize(begins_.back());
+  forEachBand([&](int chord, std::size_t band) { by_band_[begins_[band + 1]++] = chord; });
 }
 
 void BorderChords::flatten(const Point2 points[4], int curve, double from, double to,
-                           const Box2& around, std::vector<Chord>& out) const {
+                           const Box2& around, InterruptionStride& stride) {
+  stride.step();
   Box2 box;
   for (int i = 0; i < 4; ++i) {
     box.include(points[i]);
@@ -65,17 +67,18 @@ void BorderChords::flatten(const Point2 points[4], int curve, double from, doubl
   const double bend = std::max(squaredNorm(points[0] - 2 * points[1] + points[2]),
                                squaredNorm(points[1] - 2 * points[2] + points[3]));
   if (!(0.5625 * bend > kChordError * kChordError) || to - from < kShortestPart) {
-    out.push_back({points[0], points[3], curve, static_cast<float>(from), static_cast<float>(to)});
+    chords_.push_back(
+        {points[0], points[3], curve, static_cast<float>(from), static_cast<float>(to)});
     return;
   }
   Point2 half[4];
   const double middle = 0.5 * (from + to);
   std::copy(points, points + 4, half);
   bezier::cut(half, 1, 0, 0.5);
-  flatten(half, curve, from, middle, around, out);
+  flatten(half, curve, from, middle, around, stride);
   std::copy(points, points + 4, half);
   bezier::cut(half, 1, 0.5, 1);
-  flatten(half, curve, middle, to, around, out);
+  flatten(half, curve, middle, to, around, stride);
 }
 
 }  // namespace limitsurf

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/uv/uv_borders.h"
 #include "limitsurf/uv/uv_map.h"
 
@@ -26,19 +27,22 @@ class BorderChords {
     int curve;
     float from, to;  ///< the part of the curve
   };
-  Span<Chord> inBand(std::size_t band) const {
-    return Span<Chord>(chords_).subspan(begins_[band], begins_[band + 1] - begins_[band]);
+  const Chord& chord(int index) const { return chords_[static_cast<std::size_t>(index)]; }
+  /// The indices of the chords that reach a band.
+  Span<int> inBand(std::size_t band) const {
+    return Span<int>(by_band_).subspan(begins_[band], begins_[band + 1] - begins_[band]);
   }
   const BorderCurve& curve(int index) const { return curves_[static_cast<std::size_t>(index)]; }
   double margin() const { return margin_; }
 
  private:
   void flatten(const Point2 points[4], int curve, double from, double to, const Box2& around,
-               std::vector<Chord>& out) const;
+               InterruptionStride& stride);
 
   double margin_;
   std::vector<BorderCurve> curves_;
-  std::vector<Chord> chords_;        // band after band; a chord stands in every band it reaches
+  std::vector<Chord> chords_;
+  std::vector<int> by_band_;         // band after band; a chord stands in every band it reaches
   std::vector<std::size_t> begins_;  // where each band begins, and the end of the last
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -148,7 +149,8 @@ void forEachSharedSide(std::vector<DirectedSide>& sides, double same, const Visi
 
 /// Appends points of the curves along which the map folds back on a cell.
 void appendFolds(const UvCell& cell, const FaceRectangle& on, const Box2& around,
-                 std::vector<BorderCurve>& out) {
+                 InterruptionStride& stride, std::vector<BorderCurve>& out) {
+  stride.step();
   const Box2 box = cell.box();
   const JacobianBounds jacobian(cell);
   if (!(jacobian.least <= 0 && jacobian.largest >= 0) || (box.high < around.low).any() ||
@@ -169,7 +171,7 @@ void appendFolds(const UvCell& cell, const FaceRectangle& on, const Box2& around
   UvCell quarters[4];
   cell.quarter(quarters);
   for (const UvCell& quarter : quarters) {
-    appendFolds(quarter, on, around, out);
+    appendFolds(quarter, on, around, stride, out);
   }
 }
 
@@ -255,8 +257,9 @@ void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, const 
     append(0, 0);
     append(2, 3);
     if (of.folds) {
+      InterruptionStride stride;
       for (const BezierPatch& patch : split.patches) {
-        appendFolds(cellOf(patch, frame), patch.on, around, out);
+        appendFolds(cellOf(patch, frame), patch.on, around, stride, out);
       }
     }
     if (first) {
@@ -281,7 +284,9 @@ void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, const 
 void UvBorders::appendCurves(const PlaneFrame& frame, const Box2& box, double reach, double detail,
                              std::vector<BorderCurve>& out) const {
   const Box2 around = box.grown(Point2::Constant(reach));
+  InterruptionStride stride;
   for (const Sides& of : sides_) {
+    stride.step();
     const UvPiece& piece = map_.pieces()[static_cast<std::size_t>(of.piece)];
     const Box2 image = frame.at(piece.box);
     if ((image.high < around.low).any() || (image.low > around.high).any()) {
@@ -298,7 +303,7 @@ void UvBorders::appendCurves(const PlaneFrame& frame, const Box2& box, double re
       }
     }
     if (of.folds) {
-      appendFolds(cellOf(patch, frame), patch.on, around, out);
+      appendFolds(cellOf(patch, frame), patch.on, around, stride, out);
     }
   }
 }

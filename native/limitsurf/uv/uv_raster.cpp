@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/uv/nearest_chords.h"
@@ -183,8 +184,10 @@ void findTexels(const LatticeFinds& finds, const Lattice& lattice, const BorderC
   std::optional<NearestChords> nearest;
   if (chords && !chords->inBand(band).empty()) {
     nearest.emplace(*chords, lattice, memory);
-    for (const BorderChords::Chord& chord : chords->inBand(band)) {
-      nearest->add(chord, [&](int x, int y) { return finds.at(x, y).face < 0; });
+    InterruptionStride stride;
+    for (const int chord : chords->inBand(band)) {
+      stride.step();
+      nearest->add(chords->chord(chord), [&](int x, int y) { return finds.at(x, y).face < 0; });
     }
   }
   out.clear();
@@ -317,7 +320,9 @@ Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& 
         BandWork work = works.take();
         LatticeFinds finds(lattice, work.slots);
         LatticeInverse inverse(lattice, bands.tolerance(), finds);
+        InterruptionStride stride;
         for (const int piece : bands.pieces(band)) {
+          stride.step();
           map.invert(map.pieces()[static_cast<std::size_t>(piece)], bands.frame(), inverse, finds);
         }
         finds.finish();

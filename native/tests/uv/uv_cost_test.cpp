@@ -5,6 +5,8 @@
 // everything.
 #include <gtest/gtest.h>
 
+#include "limitsurf/interruption_point.h"
+#include "limitsurf/uv/uv_map.h"
 #include "limitsurf/uv/uv_patches.h"
 #include "limitsurf/uv/uv_raster.h"
 #include "support/random.h"
@@ -147,6 +149,28 @@ TEST(UvCost, CollapsedEdgesCostLittle) {
       EXPECT_LE(inverse.work().searches, 200);
     }
   }
+}
+
+/// The borders of a map that folds over itself are long, and they are prepared before the first
+/// texel is looked for.
+TEST(UvCost, BordersAreInterruptibleWhileTheyArePrepared) {
+  const LimitSurface surface = grid();
+  Random random(2);
+  DataRows values(kColumns * kRows, 2);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    values.data()[i] = random.uniform(0, 1);
+  }
+  const SurfaceData data = surface.vertexData(values, 1);
+  const UvMap map(data, 1);
+  RasterOptions options;
+  options.width = options.height = 400;
+  int passes[2] = {};
+  for (const int margin : {0, 1}) {
+    options.margin = 20 * margin;
+    const InterruptionPoint point([&] { ++passes[margin]; });
+    map.rasterize(options, 1);
+  }
+  EXPECT_GT(passes[1], passes[0] + 100);
 }
 
 }  // namespace
