@@ -257,8 +257,8 @@ bool hasArea(const BezierPatch& patch, double diagonal) {
          kPointRounding * (diagonal * (along_s + along_t) + along_s * along_t);
 }
 
-}  // namespace
-
+/// Whether any patch has area. Of a core only the first three are looked at: the others are
+/// made of the same control points.
 bool hasArea(const SurfacePatches& patches) {
   const double diagonal = patches.diagonal();
   std::vector<SurfacePiece> pieces;
@@ -284,7 +284,12 @@ bool hasArea(const SurfacePatches& patches) {
   return false;
 }
 
+}  // namespace
+
 std::vector<AreaCell> areaCells(const SurfacePatches& patches, int threads) {
+  if (!hasArea(patches)) {
+    return {};
+  }
   const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());
   return concatenated<AreaCell>(
       tiles, kTilesPerTask, threads,

@@ -23,12 +23,9 @@ struct AreaCell {
 };
 
 /// The surface cut into cells so small that the area of each is close to its bound, in face order.
+/// There are none where |ds x dt| of all patches is nothing but rounding errors: where the surface
+/// is collapsed to lines and points.
 std::vector<AreaCell> areaCells(const SurfacePatches& patches, int threads);
-
-/// Whether |ds x dt| of any patch is more than rounding errors. It is not where a surface is
-/// collapsed to lines and points. Looks at one patch where the first one has area, and at no patch
-/// of a core beyond the first steps.
-bool hasArea(const SurfacePatches& patches);
 
 /// The rectangle of the face that a cell covers.
 FaceRectangle rectangleOf(const SurfacePatches& patches, const AreaCell& cell);

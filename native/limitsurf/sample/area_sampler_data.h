@@ -15,7 +15,7 @@ struct AreaSampler::Data {
   Data(const LimitSurface& limit_surface, int threads)
       : surface(limit_surface),
         patches(limit_surface, threads, PatchUnit::own),
-        cells(limitsurf::hasArea(patches) ? areaCells(patches, threads) : std::vector<AreaCell>()),
+        cells(areaCells(patches, threads)),
         uniform(cells) {}
 
   /// An area of this part of the diagonal's square and less is nothing but rounding errors.

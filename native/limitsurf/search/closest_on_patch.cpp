@@ -68,9 +68,9 @@ class PatchSearch {
   /// patch are bounded, to leave out cells without feet: if the tangents are nearly parallel, the
   /// squared distance is convex in a narrow band only.
   static constexpr int kFewCells = 16;
-  /// After this many cells each is compared with a plane of its own (isAside()), as narrow patches
-  /// are from the first one on, and a minimum is looked for in each: along a curve of places that
-  /// are almost equally close, the corners of cells are no good guesses.
+  /// After this many cells each is compared with a plane of its own (isAside()), and a minimum is
+  /// looked for in each: along a curve of places that are almost equally close, the corners of
+  /// cells are no good guesses. A narrow patch is compared with a plane as a whole, too.
   static constexpr int kManyCells = 64;
   /// Patches whose width is at most this part of their length count as narrow.
   static constexpr double kNarrow = 1. / 32;

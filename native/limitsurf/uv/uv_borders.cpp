@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "limitsurf/interruption_point.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -243,7 +242,8 @@ void UvBorders::appendLastSides(const Sides& of, const PlaneFrame& frame, const 
 }
 
 void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, const Box2& around,
-                                double detail, std::vector<BorderCurve>& out) const {
+                                double detail, InterruptionStride& stride,
+                                std::vector<BorderCurve>& out) const {
   SurfacePatches::SplitCore split;
   SurfacePiece core = map_.pieces()[static_cast<std::size_t>(of.piece)].piece;
   const auto append = [&](int quarter, int side) {
@@ -257,7 +257,6 @@ void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, const 
     append(0, 0);
     append(2, 3);
     if (of.folds) {
-      InterruptionStride stride;
       for (const BezierPatch& patch : split.patches) {
         appendFolds(cellOf(patch, frame), patch.on, around, stride, out);
       }
@@ -293,7 +292,7 @@ void UvBorders::appendCurves(const PlaneFrame& frame, const Box2& box, double re
       continue;
     }
     if (piece.piece.isCore()) {
-      appendCoreSides(of, frame, around, detail, out);
+      appendCoreSides(of, frame, around, detail, stride, out);
       continue;
     }
     const BezierPatch patch = map_.patches().patch(piece.piece);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/uv/uv_patches.h"
 
 namespace limitsurf {
@@ -45,7 +46,7 @@ class UvBorders {
   void appendSide(const BezierPatch& patch, int side, bool flipped, const PlaneFrame& frame,
                   std::vector<BorderCurve>& out) const;
   void appendCoreSides(const Sides& of, const PlaneFrame& frame, const Box2& around, double detail,
-                       std::vector<BorderCurve>& out) const;
+                       InterruptionStride& stride, std::vector<BorderCurve>& out) const;
 
   /// Appends the rests of the two sides at a core's vertex, after its last split.
   void appendLastSides(const Sides& of, const PlaneFrame& frame, const SurfacePiece& core,

@@ -35,10 +35,6 @@ class TextCaster {
     value = Text(bytes);
     return true;
   }
-
-  static pybind11::handle cast(const Text& from, pybind11::return_value_policy, pybind11::handle) {
-    return pybind11::str(static_cast<const std::string&>(from)).release();
-  }
 };
 
 }  // namespace limitsurf::python

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "text.h"
+
 namespace limitsurf::python {
 
 namespace py = pybind11;
@@ -66,8 +68,7 @@ std::string valueText(const py::handle& value) {
     return "an integer of " + py::cast<std::string>(py::str(value.attr("bit_length")())) + " bits";
   }
   try {
-    const py::object text = py::repr(value).attr("encode")("utf-8", "backslashreplace");
-    return shortened(py::cast<std::string>(text));
+    return shortened(py::cast<Text>(py::repr(value)));
   } catch (py::error_already_set& error) {
     if (!error.matches(PyExc_Exception)) {
       throw;

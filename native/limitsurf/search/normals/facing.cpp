@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/surface/differential.h"
+
 namespace limitsurf {
 namespace {
 
 /// If the sine of the angle between the tangents is below this, rounding may turn their cross
 /// product too far, and the normal that evaluate() gives decides.
 constexpr double kParallel = 1e-3;
-/// Nor may the cross product be below this part of the longer tangent times the patch's size, as
-/// next to a fold: evaluate() gives no normal where it is below about 2^-30 (kMostNormalCondition).
-constexpr double kVanishing = 0x1p-24;
+/// Nor may the cross product nearly vanish beside the patch's size, as next to a fold, where
+/// evaluate() gives no normal. Its measure of size is less than this many times ours.
+constexpr double kLargerSize = 64;
 /// The cross products of tangents of a patch that is collapsed onto a line are at most this part of
 /// the square of the longest tangent: 64 roundings. There evaluate() gives no normal.
 constexpr double kLine = 0x1p-46;
@@ -41,9 +43,8 @@ bool Facing::accepts(const BezierPatch& patch, double s, double t, const Vector3
   }
   // A patch has the orientation of its face, up to rotations by right angles.
   const Vector3 normal = ds.cross(dt);
-  const double length = normal.norm(), s_length = ds.norm(), t_length = dt.norm();
-  const bool is_certain = length > kParallel * s_length * t_length &&
-                          length > kVanishing * std::max(s_length, t_length) * sizeOf(patch);
+  const bool is_certain = normal.norm() > kParallel * ds.norm() * dt.norm() &&
+                          isWellConditioned(ds, dt, kLargerSize * sizeOf(patch));
   return is_certain ? accepts(normal) : accepts(at);
 }
 
