@@ -76,6 +76,13 @@ Cage creasedPole(int triangles) {
   return cage;
 }
 
+/// The pole's vertex is moved up, so that all faces are slender and close together there.
+Cage slenderCone(int triangles) {
+  Cage cage = pole(triangles);
+  cage.positions(0, 2) += 100;
+  return cage;
+}
+
 LimitSurface regular() { return limitSurface(perturbed(grid(20, 20), 0.1, 1)); }
 
 struct Work {
@@ -135,6 +142,13 @@ constexpr Work kWork[] = {
        const LimitSurface surface = limitSurface(scanCage(static_cast<int>(std::sqrt(n / 20))));
        BlueNoiseOptions options;
        options.count = n / 10;
+       AreaSampler(surface, 1).blueNoise(options, 1);
+     }},
+    {"blue noise, a slender cone",
+     [](int n) {
+       const LimitSurface surface = limitSurface(slenderCone(n / 40));
+       BlueNoiseOptions options;
+       options.count = 50;
        AreaSampler(surface, 1).blueNoise(options, 1);
      }},
     {"open, a pole with semi-sharp edges", [](int n) { limitSurface(creasedPole(n)); }},

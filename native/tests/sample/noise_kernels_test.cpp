@@ -186,5 +186,40 @@ TEST(DiscGrid, FindsAllDiscsThatAreInConflict) {
   }
 }
 
+/// Where many discs are in one place, and in others around it where few are; with equal ranks too.
+TEST(DiscGrid, FindsRivalsWhereDiscsAreCrowded) {
+  Random random(4);
+  Box box;
+  box.include(Vector3(-1, -1, -1));
+  box.include(Vector3(1, 1, 1));
+  for (const double most : {0.05, 0.7}) {
+    for (const double crowd : {1., 0.02, 0.}) {
+      std::vector<NoiseDisc> discs = randomDiscs(random, 2000, 0.05, most);
+      for (std::size_t i = 0; i < discs.size(); i += 2) {
+        discs[i].position = discs[i % 3].position + crowd * discs[i].position;
+        discs[i].position = discs[i].position.cwiseMax(-1).cwiseMin(1);
+      }
+      for (NoiseDisc& disc : discs) disc.rank = std::floor(300 * random.uniform());
+      DiscGrid grid(box, 0.05, most);
+      grid.insert({discs}, 2);
+      EXPECT_EQ(grid.sortCrowded(2), most > 0.1 || crowd < 1);
+      int rivals = 0;
+      for (std::size_t i = 0; i < discs.size(); ++i) {
+        const bool has_rival = std::any_of(discs.begin(), discs.end(), [&](const NoiseDisc& other) {
+          const std::size_t number = static_cast<std::size_t>(&other - discs.data());
+          const bool is_before =
+              other.rank != discs[i].rank ? other.rank < discs[i].rank : number < i;
+          return is_before && isCloserThanMeanOfRadii(other, discs[i]) &&
+                 other.normal.dot(discs[i].normal) > kRightAngle;
+        });
+        EXPECT_EQ(grid.hasRival(i), has_rival) << i;
+        rivals += has_rival;
+      }
+      EXPECT_GT(rivals, most > 0.1 || crowd < 1 ? 800 : 0);
+      EXPECT_LT(rivals, 2000);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limitsurf::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/sample/blue_noise/disc_grid.h"
 
+#include "limitsurf/interruptible_sort.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -54,6 +55,54 @@ void DiscGrid::insert(const std::vector<Span<NoiseDisc>>& lists, int threads) {
                                                                 std::memory_order_relaxed);
     }
   });
+}
+
+bool DiscGrid::sortCrowded(int threads) {
+  bool is_any_crowded = false;
+  for (std::size_t i = 0; i < discs_.size() && !is_any_crowded; i += kProbes) {
+    is_any_crowded = isCrowded(static_cast<std::int32_t>(i));
+  }
+  if (is_any_crowded) {
+    parallelFor(blocks_.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        sortCrowded(blocks_[i]);
+      }
+    });
+  }
+  return is_any_crowded;
+}
+
+void DiscGrid::sortCrowded(Block& block) {
+  std::vector<std::int32_t> order;
+  for (int cube = 0; cube < kCubes; ++cube) {
+    if (!isCrowded(block.firstOf(cube))) {
+      continue;
+    }
+    order.clear();
+    for (std::int32_t i = block.firstOf(cube); i >= 0; i = next_[i]) {
+      order.push_back(i);
+    }
+    sortInterruptibly(order.begin(), order.end(),
+                      [&](std::int32_t a, std::int32_t b) { return comesBefore(a, b); });
+    std::int32_t after = -1;
+    for (auto i = order.rbegin(); i != order.rend(); ++i) {
+      next_[*i] = after;
+      after = *i;
+    }
+    block.first[cube].store(after, std::memory_order_relaxed);
+    block.is_sorted |= std::uint64_t{1} << cube;
+  }
+}
+
+bool DiscGrid::hasRival(std::size_t number) const {
+  const NoiseDisc& own = discs_[number];
+  const auto isPast = [&](std::int32_t other) {
+    return !comesBefore(other, static_cast<std::int32_t>(number));
+  };
+  const auto isRival = [&](std::int32_t other) {
+    return !isPast(other) && seeEachOther(discs_[other].normal, own.normal);
+  };
+  return any(own.position, own.radius, isRival, isPast);
 }
 
 void DiscGrid::markAbove(const NoiseDisc& disc, int level) {

@@ -56,7 +56,16 @@ class DiscGrid {
   /// Calls visit(number) for each disc whose centre is closer to the position than the mean of both
   /// radii, until visit() returns true. Returns whether it did.
   template <typename Visit>
-  bool any(const Vector3& position, double radius, const Visit& visit) const;
+  bool any(const Vector3& position, double radius, const Visit& visit) const {
+    return any(position, radius, visit, [](std::int32_t) { return false; });
+  }
+
+  /// Sorts the discs of each crowded cube, so that hasRival() looks at few of them. To be called
+  /// once all discs are there. Returns whether there are crowded cubes.
+  bool sortCrowded(int threads);
+  /// Whether another disc is in conflict with a disc, sees it, and comes before it: has a lower
+  /// rank, or the same rank and a lower number.
+  bool hasRival(std::size_t number) const;
 
  private:
   friend class DiscFinder;
@@ -67,6 +76,7 @@ class DiscGrid {
   struct alignas(64) Block {
     std::atomic<std::int32_t> first[kCubes];  // of each cube, the disc added last; -1 if none
     std::uint64_t has_below = 0;              // a bit for each cube
+    std::uint64_t is_sorted = 0;              // likewise
 
     Block() {
       for (std::atomic<std::int32_t>& disc : first) {
@@ -84,6 +94,12 @@ class DiscGrid {
   static constexpr std::size_t kFewestEntries = 256, kDiscsPerTask = 4096;
   /// The sides of cubes are rounded; distances to them are enlarged by more than that.
   static constexpr double kSideRounding = 1e-9;
+  /// A cube with more discs is crowded. On a smooth surface a cube has some ten candidates at most.
+  /// Where sheets are stacked or faces are slivers, it may have any number, and a search that looks
+  /// at all of them takes too long.
+  static constexpr int kCrowd = 64;
+  /// Every so many discs, sortCrowded() looks whether the cube of one is crowded.
+  static constexpr std::size_t kProbes = 16;
 
   int levelOf(double radius) const {
     int level = 0;
@@ -139,9 +155,27 @@ class DiscGrid {
     }
   }
 
-  template <typename Visit>
+  /// As the public one. In sorted cubes the discs from the first one on for which isPast(number) is
+  /// true are left out.
+  template <typename Visit, typename IsPast>
+  bool any(const Vector3& position, double radius, const Visit& visit, const IsPast& isPast) const;
+  template <typename Visit, typename IsPast>
   bool anyIn(int level, const Index at[3], bool downwards, const Vector3& position, double radius,
-             const Visit& visit) const;
+             const Visit& visit, const IsPast& isPast) const;
+
+  bool comesBefore(std::int32_t a, std::int32_t b) const {
+    return discs_[a].rank != discs_[b].rank ? discs_[a].rank < discs_[b].rank : a < b;
+  }
+  /// Whether a list has more than kCrowd discs.
+  bool isCrowded(std::int32_t first) const {
+    int count = 0;
+    for (std::int32_t i = first; i >= 0 && count <= kCrowd; i = next_[i]) {
+      ++count;
+    }
+    return count > kCrowd;
+  }
+  /// Sorts the discs of the crowded cubes of a block by comesBefore().
+  void sortCrowded(Block& block);
 
   static double squaredDistance(const Vector3& a, const Vector3& b) {
     const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -154,12 +188,13 @@ class DiscGrid {
   std::vector<std::size_t> on_level_;          // the number of discs on each level
   std::vector<NoiseDisc> discs_;
   std::vector<std::int32_t> next_;  // for each disc the next one of the same cube, or -1
-  std::deque<Block> blocks_;
-  std::vector<Entry> table_;  // a hash table with open addressing
+  std::deque<Block> blocks_;        // in the order in which they were made
+  std::vector<Entry> table_;        // a hash table with open addressing
 };
 
-template <typename Visit>
-bool DiscGrid::any(const Vector3& position, double radius, const Visit& visit) const {
+template <typename Visit, typename IsPast>
+bool DiscGrid::any(const Vector3& position, double radius, const Visit& visit,
+                   const IsPast& isPast) const {
   const int own = levelOf(radius);
   for (int level = own; level < static_cast<int>(sides_.size()); ++level) {
     if (on_level_[level] == 0 && !(level == own && level > 0)) {
@@ -175,7 +210,7 @@ bool DiscGrid::any(const Vector3& position, double radius, const Visit& visit) c
       const int corner = i ^ own_corner;
       Index at[3];
       cornerOf(low, corner, at);
-      if (anyIn(level, at, level == own, position, radius, visit)) {
+      if (anyIn(level, at, level == own, position, radius, visit, isPast)) {
         return true;
       }
     }
@@ -183,15 +218,16 @@ bool DiscGrid::any(const Vector3& position, double radius, const Visit& visit) c
   return false;
 }
 
-template <typename Visit>
+template <typename Visit, typename IsPast>
 bool DiscGrid::anyIn(int level, const Index at[3], bool downwards, const Vector3& position,
-                     double radius, const Visit& visit) const {
+                     double radius, const Visit& visit, const IsPast& isPast) const {
   const Block* block = find(level, at);
   if (!block) {
     return false;
   }
   const int cube = cubeOf(at);
-  for (std::int32_t i = block->firstOf(cube); i >= 0; i = next_[i]) {
+  const bool is_sorted = block->is_sorted >> cube & 1;
+  for (std::int32_t i = block->firstOf(cube); i >= 0 && !(is_sorted && isPast(i)); i = next_[i]) {
     const NoiseDisc& disc = discs_[i];
     const double reach = (disc.radius + radius) / 2;
     if (squaredDistance(position, disc.position) < reach * reach && visit(i)) {
@@ -214,7 +250,7 @@ bool DiscGrid::anyIn(int level, const Index at[3], bool downwards, const Vector3
       squared += outside * outside;
     }
     if (squared <= reach * reach * (1 + kSideRounding) &&
-        anyIn(level - 1, child, true, position, radius, visit)) {
+        anyIn(level - 1, child, true, position, radius, visit, isPast)) {
       return true;
     }
   }
