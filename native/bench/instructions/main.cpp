@@ -83,6 +83,16 @@ Cage slenderCone(int triangles) {
   return cage;
 }
 
+/// Faces a hundred times as long as wide, in a direction between the axes.
+Cage slenderSheet() {
+  Cage cage = perturbed(grid(20, 20), 0.1, 1);
+  const Eigen::RowVector3d along = Eigen::RowVector3d(1, 2, 3).normalized();
+  for (auto position : cage.positions.rowwise()) {
+    position += 99 * position.dot(along) * along;
+  }
+  return cage;
+}
+
 LimitSurface regular() { return limitSurface(perturbed(grid(20, 20), 0.1, 1)); }
 
 struct Work {
@@ -130,6 +140,18 @@ constexpr Work kWork[] = {
      [](int n) {
        const LimitSurface surface = regular();
        SurfaceSearch(surface, 1).closest(pointsNear(surface, n), {}, 1);
+     }},
+    {"first hits of rays, slender faces aslant",
+     [](int n) {
+       const LimitSurface surface = limitSurface(slenderSheet());
+       Points origins(n, 3), directions(n, 3);
+       Random random(6);
+       for (int row = 0; row < n; ++row) {
+         directions.row(row) = random.vector(1).transpose();
+         origins.row(row) = surface.positions().row(row % surface.positions().rows());
+         origins.row(row) -= 100 * directions.row(row);
+       }
+       SurfaceSearch(surface, 1).rayCast(origins, directions, 1000, 1);
      }},
     {"uniform points",
      [](int n) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "limitsurf/float_rounding.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
@@ -130,15 +131,18 @@ class ClosestSearch {
       const TreePart& part = data_.part(next);
       if (!WideTree::isLeaf(next.place)) {
         const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next.place)];
-        const WideTree::Row squared = box_point.squaredDistances(node);
+        WideTree::Row squared = box_point.squaredDistances(node);
         const double enough = best_.enough();
         const auto matters = [&](int child) {
           return squared[child] < enough &&
                  !(facing_ && cones_ && child < node.count &&
                    cones_->cannotFace(next, child, point_in_boxes_, unit_, reach_));
         };
-        open.add(node, squared, box_point.nearness(node, squared),
-                 WideTree::children(node, matters), next.part);
+        unsigned bits = WideTree::children(node, matters);
+        if (node.closer >= 0) {
+          bits = lookCloser(data_.closerBoxes(node), bits, squared);
+        }
+        open.add(node, squared, box_point.nearness(node, squared), bits, next.part);
         continue;
       }
       const std::int32_t leaf = WideTree::leaf(next.place);
@@ -157,6 +161,19 @@ class ClosestSearch {
         }
       }
     } while (open.take(next));
+  }
+
+  /// Raises the bounds of the children of a node whose bits are set and that have closer boxes.
+  /// Returns the bits of those that still matter.
+  unsigned lookCloser(const CloserBoxes& closer, unsigned bits, WideTree::Row& squared) const {
+    for (int child = 0; child < WideTree::kWidth; ++child) {
+      if ((bits & closer.children) >> child & 1) {
+        const double bound = squaredDistanceTo(closer.boxes[child], best_.from, point_in_boxes_);
+        squared[child] = std::max(squared[child], roundedDown(bound));
+        bits &= ~(static_cast<unsigned>(!(bound < best_.enough())) << child);
+      }
+    }
+    return bits;
   }
 
   const SearchTree& data_;

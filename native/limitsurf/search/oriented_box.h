@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "limitsurf/surface/patches/surface_patches.h"
 #include "limitsurf/surface/pose/padded.h"
@@ -36,6 +38,34 @@ class OrientedBox {
       }
     }
     return point;
+  }
+
+  Vector3 axis(int i) const { return {axes_[i][0], axes_[i][1], axes_[i][2]}; }
+  /// The axes along which the box is longest and second longest.
+  std::pair<int, int> longestAxes() const {
+    const int shortest =
+        half_[0] < half_[1] ? (half_[0] < half_[2] ? 0 : 2) : (half_[1] < half_[2] ? 1 : 2);
+    const int a = (shortest + 1) % 3, b = (shortest + 2) % 3;
+    return half_[a] < half_[b] ? std::pair(b, a) : std::pair(a, b);
+  }
+
+  /// The area of the largest face, and of three faces that meet in a corner.
+  double largestFace() const {
+    const auto [a, b] = longestAxes();
+    return 4. * half_[a] * half_[b];
+  }
+  double halfArea() const {
+    return 4. * half_[0] * half_[1] + 4. * half_[1] * half_[2] + 4. * half_[2] * half_[0];
+  }
+
+  /// Widens the box, so that it holds boxes whose corners it was made around. A box is what its
+  /// axes as they were rounded bound, and may reach beyond its corners by this part of its size.
+  void widenForRoundedAxes() {
+    const double reach = std::sqrt(double{half_[0]} * half_[0] + double{half_[1]} * half_[1] +
+                                   double{half_[2]} * half_[2]);
+    for (Real& half : half_) {
+      half = static_cast<Real>(half + (1 - kNearlyOne) * 2 * reach);
+    }
   }
 
   /// A lower bound of the squared distance of the box from a point.

@@ -64,7 +64,10 @@ class RaySearch {
     if (!WideTree::isLeaf(next_.place)) {
       const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next_.place)];
       WideTree::Row from;
-      const unsigned met = box_ray_.meet(node, begin_, roundedUp(end()), from);
+      unsigned met = box_ray_.meet(node, begin_, roundedUp(end()), from);
+      if (node.closer >= 0) {
+        met = lookCloser(data_.closerBoxes(node), met);
+      }
       open_.add(node, from, from, met, next_.part);
       return takeNext();
     }
@@ -111,6 +114,19 @@ class RaySearch {
   /// A ray looks at a few parts of patches, or at millions where it runs along many of them. So
   /// many take about a millisecond.
   static constexpr std::int64_t kCellsPerPass = 4096;
+
+  /// Of the children of a node whose bits are set, returns those whose closer boxes the ray meets
+  /// as well, if they have such boxes.
+  unsigned lookCloser(const CloserBoxes& closer, unsigned bits) const {
+    for (int child = 0; child < WideTree::kWidth; ++child) {
+      double from = start();
+      if (((bits & closer.children) >> child & 1) != 0 &&
+          !closer.boxes[child].meets(ray_, margin(), from, end())) {
+        bits &= ~(1u << child);
+      }
+    }
+    return bits;
+  }
 
   double margin() const { return found_.tolerance; }
   double start() const { return found_.from - found_.tolerance; }

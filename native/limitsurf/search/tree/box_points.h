@@ -33,7 +33,7 @@ class BoxPoints {
       points_.push_back(vertex + offset);
     }
   }
-  /// A box that is relative to the same origin.
+  /// Boxes that are relative to the same origin.
   template <typename Real>
   void add(const OrientedBox<Real>& box) {
     for (int corner = 0; corner < 8; ++corner) {
@@ -41,7 +41,25 @@ class BoxPoints {
     }
   }
 
+  void add(const BoxF& box) {
+    for (int corner = 0; corner < 8; ++corner) {
+      Padded point = Padded::Zero();
+      for (int axis = 0; axis < 3; ++axis) {
+        point[axis] = (corner >> axis & 1) != 0 ? box.high[axis] : box.low[axis];
+      }
+      points_.push_back(point);
+    }
+  }
+
   void reserve(std::size_t count) { points_.reserve(count); }
+  std::size_t size() const { return points_.size(); }
+  Vector3 mean() const {
+    Padded sum = Padded::Zero();
+    for (const Padded& point : points_) {
+      sum += point;
+    }
+    return sum.head<3>().matrix() / static_cast<double>(points_.size());
+  }
   Vector3 point(std::size_t i) const { return points_[i].head<3>(); }
 
   BoxF axisAligned() const {

@@ -120,6 +120,7 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       }
     }
   }
+  closer_boxes_ = makeCloserBoxes(top_nodes_, top_leaves_);
   constexpr std::size_t kMostPatches = kPatchBytes / sizeof(BezierPatch);
   if (leaf_count <= kMostPatches) {
     top_patches_.resize(leaf_count);

@@ -14,6 +14,7 @@
 #include "limitsurf/prefetch.h"
 #include "limitsurf/search/rings/search_rings.h"
 #include "limitsurf/search/surface_search.h"
+#include "limitsurf/search/tree/closer_boxes.h"
 #include "limitsurf/search/tree/leaf_maker.h"
 #include "limitsurf/search/tree/nest_store.h"
 #include "limitsurf/search/tree/tree_part.h"
@@ -67,6 +68,10 @@ struct SearchTree {
   void expect(const NearestFirst::Entry& at) const;
 
   const TreePart& top() const { return top_; }
+  /// Of a node of the top, if it has them: WideTree::Node::closer.
+  const CloserBoxes& closerBoxes(const WideTree::Node& node) const {
+    return closer_boxes_[static_cast<std::size_t>(node.closer)];
+  }
   std::int32_t nestCount() const { return static_cast<std::int32_t>(nest_tiles_.size()); }
   /// To be called before so many searches. When there have been as many as there are nests, those
   /// that are left are made, one after the other: searches that reach them in no particular order
@@ -103,6 +108,7 @@ struct SearchTree {
   LargePageVector<WideTree::Node> top_nodes_;
   LargePageVector<SearchLeaf> top_leaves_;
   LargePageVector<BezierPatch> top_patches_;
+  std::vector<CloserBoxes> closer_boxes_;
   TreePart top_;
   std::int32_t first_nest_ = 0;  ///< its number as a child in the top: nests come after all nodes
   std::vector<Tiles> nest_tiles_;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 #include <thread>
@@ -33,10 +34,12 @@ class Walk {
         tree_(tree),
         random_(random) {}
 
-  void visit(NearestFirst::Entry at, std::vector<Box> boxes) {
+  /// What is at `at` lies in the boxes.
+  void visit(NearestFirst::Entry at, std::vector<Box> boxes, std::vector<LeafBox> closer_boxes) {
     const TreePart& part = tree_.part(at);
     if (WideTree::isLeaf(at.place)) {
-      visitLeaf(part.leaves[static_cast<std::size_t>(WideTree::leaf(at.place))], boxes);
+      visitLeaf(part.leaves[static_cast<std::size_t>(WideTree::leaf(at.place))], boxes,
+                closer_boxes);
       return;
     }
     const WideTree::Node& node = part.nodes[static_cast<std::size_t>(at.place)];
@@ -47,16 +50,23 @@ class Walk {
         box.high[axis] = node.bounds[axis][1][i];
       }
       boxes.push_back(box);
-      visit({node.children[i], 0, at.part}, boxes);
+      const bool is_close = node.closer >= 0 && (tree_.closerBoxes(node).children >> i & 1) != 0;
+      if (is_close) {
+        closer_boxes.push_back(tree_.closerBoxes(node).boxes[i]);
+        ++closer;
+      }
+      visit({node.children[i], 0, at.part}, boxes, closer_boxes);
       boxes.pop_back();
+      if (is_close) closer_boxes.pop_back();
     }
   }
 
   std::vector<double> covered;  ///< the area of each face's leaves, of their parameters
-  int points = 0;
+  int points = 0, closer = 0;
 
  private:
-  void visitLeaf(const SearchLeaf& leaf, const std::vector<Box>& boxes) {
+  void visitLeaf(const SearchLeaf& leaf, const std::vector<Box>& boxes,
+                 const std::vector<LeafBox>& closer_boxes) {
     const bool is_ring =
         leaf.piece.isCore() && tree_.rings.isLarge(tree_.patches.ringOf(leaf.piece));
     std::vector<SurfacePiece> pieces{leaf.piece};
@@ -79,6 +89,9 @@ class Walk {
           EXPECT_LE((in_boxes - box.high).maxCoeff(), kRounding);
         }
         EXPECT_LE(std::sqrt(leaf.box.squaredDistance(in_boxes)), kRounding);
+        for (const LeafBox& box : closer_boxes) {
+          EXPECT_EQ(box.squaredDistance(in_boxes), 0);
+        }
         ++points;
       }
     }
@@ -99,7 +112,7 @@ TEST(SearchTree, LeavesCoverAllFacesWithinTheirBoxes) {
       continue;
     }
     Walk walk(tree, random);
-    walk.visit(SearchTree::kRoot, {});
+    walk.visit(SearchTree::kRoot, {}, {});
     EXPECT_EQ(tree.nestsMade(), tree.nestCount());
     nests += tree.nestCount();
     for (int tile = 0; tile < tree.patches.tileCount(); ++tile) {
@@ -135,6 +148,36 @@ TEST(SearchTree, LongThinFacesAreNoNests) {
   const LimitSurface thin = limitSurface(pole(500)), usual = limitSurface(pole(12));
   EXPECT_EQ(SearchTree(thin, 1).nestCount(), 0);
   EXPECT_EQ(SearchTree(usual, 1).nestCount(), usual.faceCount());
+}
+
+/// A sheet of long and narrow faces that lie aslant.
+Cage slenderSheet(double length, std::uint64_t seed) {
+  Cage cage = perturbed(grid(20, 20), 0.1, seed);
+  cage.positions.col(0) *= length;
+  const Vector3 axis = Random(seed).vector(1).normalized();
+  const Eigen::AngleAxis<double> turn(0.7, axis);
+  cage.positions = (cage.positions * turn.toRotationMatrix().transpose()).eval();
+  return cage;
+}
+
+/// They have closer boxes, which hold what is below them; meshes of usual faces have hardly any.
+TEST(SearchTree, LongThinFacesLieInCloserBoxes) {
+  Random random(5);
+  const auto closerBoxes = [&](const Cage& cage) {
+    const LimitSurface surface = limitSurface(cage);
+    const SearchTree tree(surface, 1);
+    Walk walk(tree, random);
+    walk.visit(SearchTree::kRoot, {}, {});
+    return walk.closer;
+  };
+  EXPECT_GT(closerBoxes(pole(500)), 100);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const double length : {100., 1e4, 1e8}) {
+      EXPECT_GT(closerBoxes(slenderSheet(length, seed)), 5) << length;
+    }
+    EXPECT_LE(closerBoxes(slenderSheet(1, seed)), 1);
+  }
+  EXPECT_EQ(closerBoxes(pole(12)), 0);
 }
 
 /// After as many searches as there are nests, no search has to make one.
