@@ -261,10 +261,10 @@ class PatchSearch {
   /// The control points of the patch on a cell, relative to the searching point.
   void pointsOf(const Cell& cell, BezierPatch::Point out[16]) const {
     std::copy(relative_.points, relative_.points + 16, out);
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 4 && cell.s_size < 1; ++i) {
       bezier::cut(out + 4 * i, 1, cell.s, cell.s + cell.s_size);
     }
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 4 && cell.t_size < 1; ++i) {
       bezier::cut(out + i, 4, cell.t, cell.t + cell.t_size);
     }
   }

@@ -41,6 +41,8 @@ class OrientedBox {
   }
 
   Vector3 axis(int i) const { return {axes_[i][0], axes_[i][1], axes_[i][2]}; }
+  /// Half of its length along an axis.
+  Real half(int i) const { return half_[i]; }
   /// The axes along which the box is longest and second longest.
   std::pair<int, int> longestAxes() const {
     const int shortest =

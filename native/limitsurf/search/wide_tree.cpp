@@ -142,6 +142,7 @@ class WideTree::Builder {
 WideTree::Node WideTree::nodeOver(const BoxF boxes[], const std::int32_t children[], int count) {
   Node node;
   node.count = count;
+  node.closer = -1;
   for (int axis = 0; axis < 3; ++axis) {
     Row &low = node.bounds[axis][0], &high = node.bounds[axis][1];
     low.setConstant(std::numeric_limits<float>::infinity());

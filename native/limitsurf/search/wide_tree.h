@@ -27,7 +27,7 @@ class WideTree {
     std::int32_t count;    ///< the number of children, which come first
     /// The place of boxes that fit the children more closely, where the search tree has such boxes;
     /// -1 if there are none.
-    std::int32_t closer = -1;
+    std::int32_t closer;
   };
 
   /// The same leaves in the same order, in the same boxes. The tree does not depend on the number

@@ -194,7 +194,7 @@ TEST(DiscGrid, FindsRivalsWhereDiscsAreCrowded) {
   box.include(Vector3(1, 1, 1));
   for (const double most : {0.05, 0.7}) {
     for (const double crowd : {1., 0.02, 0.}) {
-      std::vector<NoiseDisc> discs = randomDiscs(random, 2000, 0.05, most);
+      std::vector<NoiseDisc> discs = randomDiscs(random, 5000, 0.05, most);
       for (std::size_t i = 0; i < discs.size(); i += 2) {
         discs[i].position = discs[i % 3].position + crowd * discs[i].position;
         discs[i].position = discs[i].position.cwiseMax(-1).cwiseMin(1);
@@ -202,7 +202,9 @@ TEST(DiscGrid, FindsRivalsWhereDiscsAreCrowded) {
       for (NoiseDisc& disc : discs) disc.rank = std::floor(300 * random.uniform());
       DiscGrid grid(box, 0.05, most);
       grid.insert({discs}, 2);
-      EXPECT_EQ(grid.sortCrowded(2), most > 0.1 || crowd < 1);
+      grid.sortCrowded(2);
+      EXPECT_EQ(grid.isCrowded(), most > 0.1 || crowd < 1);
+      DiscFinder finder(grid);
       int rivals = 0;
       for (std::size_t i = 0; i < discs.size(); ++i) {
         const bool has_rival = std::any_of(discs.begin(), discs.end(), [&](const NoiseDisc& other) {
@@ -213,10 +215,11 @@ TEST(DiscGrid, FindsRivalsWhereDiscsAreCrowded) {
                  other.normal.dot(discs[i].normal) > kRightAngle;
         });
         EXPECT_EQ(grid.hasRival(i), has_rival) << i;
+        EXPECT_EQ(finder.hasRival(i), has_rival) << i;
         rivals += has_rival;
       }
-      EXPECT_GT(rivals, most > 0.1 || crowd < 1 ? 800 : 0);
-      EXPECT_LT(rivals, 2000);
+      EXPECT_GT(rivals, most > 0.1 || crowd < 1 ? 2000 : 0);
+      EXPECT_LT(rivals, 5000);
     }
   }
 }

@@ -230,6 +230,18 @@ TEST(BlueNoise, DependsOnTheSeedAlone) {
   }
 }
 
+/// Where thousands of slivers meet, many candidates are in one place.
+TEST(BlueNoise, DoesNotDependOnThreadsAmongSlivers) {
+  Cage cage = pole(80);
+  cage.positions(0, 2) = 100;
+  const LimitSurface surface = limitSurface(cage);
+  const BlueNoise noise = AreaSampler(surface).blueNoise(byCount(100));
+  EXPECT_EQ(noise.at.size(), 100u);
+  EXPECT_TRUE(same(noise, AreaSampler(surface, 1).blueNoise(byCount(100), 1)));
+  EXPECT_TRUE(same(noise, AreaSampler(surface, 3).blueNoise(byCount(100), 3)));
+  EXPECT_GE(smallestDistance(surface, noise.at, [&](auto&) { return noise.radius; }), 1);
+}
+
 /// Weights that grow by a factor of 2,500 from one side to the other.
 TEST(BlueNoise, FollowsVertexWeights) {
   const Cage cage = bent(grid(12, 12));

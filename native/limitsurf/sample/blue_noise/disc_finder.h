@@ -17,7 +17,7 @@ class DiscFinder {
   explicit DiscFinder(const DiscGrid& grid) : grid_(grid) {}
 
   /// Discs near the position: all that are in conflict with a disc of this radius there, and more.
-  /// They are those of last() until the next search.
+  /// They are those of last() until the next search. The grid's cubes must not be sorted.
   const NearDiscs& near(const Vector3& position, double radius) {
     if (grid_.sides_.size() > 1) {
       own_.clear();
@@ -28,14 +28,18 @@ class DiscFinder {
       last_ = &own_;
       return own_;
     }
-    Index low[3];
-    grid_.indexOf(position, 0, 0.5, low);
-    Place& place = placeOf(low);
-    if (!place.holds(low)) {
-      gather(low, place);
-    }
+    const Place& place = placeAt(position);
     last_ = &place.near;
     return place.near;
+  }
+  /// Whether a disc of the grid has a rival: as DiscGrid::hasRival(), and faster where few discs
+  /// are around it.
+  bool hasRival(std::size_t number) {
+    const NoiseDisc& own = grid_.disc(number);
+    if (grid_.sides_.size() > 1 ? grid_.isCrowded() : placeAt(own.position).is_crowded) {
+      return grid_.hasRival(number);
+    }
+    return near(own.position, own.radius).conflict(own, static_cast<double>(number));
   }
   /// Those that the last search has found: most of the discs near other positions as well, if these
   /// are close to that of the search.
@@ -74,6 +78,8 @@ class DiscFinder {
   struct Place {
     bool is_known = false;
     Index low[3];
+    bool
+        is_crowded;  ///< one of the cubes is sorted, so that `near` would be long; it is empty then
     NearDiscs near;
 
     bool holds(const Index at[3]) const { return is_known && std::equal(at, at + 3, low); }
@@ -87,9 +93,20 @@ class DiscFinder {
     return places_[(low[0] & 3) | (low[1] & 3) << 2 | (low[2] & 3) << 4];
   }
 
+  Place& placeAt(const Vector3& position) {
+    Index low[3];
+    grid_.indexOf(position, 0, 0.5, low);
+    Place& place = placeOf(low);
+    if (!place.holds(low)) {
+      gather(low, place);
+    }
+    return place;
+  }
+
   void gather(const Index low[3], Place& place) {
     place.is_known = true;
     std::copy(low, low + 3, place.low);
+    place.is_crowded = false;
     place.near.clear();
     found_.clear();
     // The cubes are in one block, or in a few.
@@ -108,7 +125,12 @@ class DiscFinder {
         is_found = true;
       }
       if (block) {
-        const std::int32_t first = block->firstOf(DiscGrid::cubeOf(at));
+        const int cube = DiscGrid::cubeOf(at);
+        if (block->is_sorted >> cube & 1) {
+          place.is_crowded = true;
+          return;
+        }
+        const std::int32_t first = block->firstOf(cube);
         for (std::int32_t disc = first; disc >= 0; disc = grid_.next_[disc]) {
           prefetch(grid_.discs_[disc]);
           found_.push_back(disc);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/sample/blue_noise/disc_grid.h"
 
+#include <utility>
+
 #include "limitsurf/interruptible_sort.h"
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -12,6 +15,7 @@ void DiscGrid::clear() {
   on_level_.assign(sides_.size(), 0);
   blocks_.clear();
   table_.assign(kFewestEntries, {});
+  is_crowded_ = false;
 }
 
 void DiscGrid::insert(const std::vector<Span<NoiseDisc>>& lists, int threads) {
@@ -57,37 +61,36 @@ void DiscGrid::insert(const std::vector<Span<NoiseDisc>>& lists, int threads) {
   });
 }
 
-bool DiscGrid::sortCrowded(int threads) {
-  bool is_any_crowded = false;
-  for (std::size_t i = 0; i < discs_.size() && !is_any_crowded; i += kProbes) {
-    is_any_crowded = isCrowded(static_cast<std::int32_t>(i));
+void DiscGrid::sortCrowded(int threads) {
+  InterruptionStride stride;
+  for (std::size_t i = 0; i < discs_.size() && !is_crowded_; i += kProbes) {
+    stride.step();
+    is_crowded_ = isLong(static_cast<std::int32_t>(i));
   }
-  if (is_any_crowded) {
-    parallelFor(blocks_.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+  if (is_crowded_) {
+    parallelFor(blocks_.size(), kBlocksPerTask, threads, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
-        sortCrowded(blocks_[i]);
+        sortCubes(blocks_[i]);
       }
     });
   }
-  return is_any_crowded;
 }
 
-void DiscGrid::sortCrowded(Block& block) {
-  std::vector<std::int32_t> order;
+void DiscGrid::sortCubes(Block& block) {
+  std::vector<std::pair<double, std::int32_t>> order;  // as comesBefore()
   for (int cube = 0; cube < kCubes; ++cube) {
-    if (!isCrowded(block.firstOf(cube))) {
+    if (!isLong(block.firstOf(cube))) {
       continue;
     }
     order.clear();
     for (std::int32_t i = block.firstOf(cube); i >= 0; i = next_[i]) {
-      order.push_back(i);
+      order.emplace_back(discs_[i].rank, i);
     }
-    sortInterruptibly(order.begin(), order.end(),
-                      [&](std::int32_t a, std::int32_t b) { return comesBefore(a, b); });
+    sortInterruptibly(order.begin(), order.end());
     std::int32_t after = -1;
     for (auto i = order.rbegin(); i != order.rend(); ++i) {
-      next_[*i] = after;
-      after = *i;
+      next_[i->second] = after;
+      after = i->second;
     }
     block.first[cube].store(after, std::memory_order_relaxed);
     block.is_sorted |= std::uint64_t{1} << cube;

@@ -61,8 +61,10 @@ class DiscGrid {
   }
 
   /// Sorts the discs of each crowded cube, so that hasRival() looks at few of them. To be called
-  /// once all discs are there. Returns whether there are crowded cubes.
-  bool sortCrowded(int threads);
+  /// once all discs are there.
+  void sortCrowded(int threads);
+  /// Whether any cube is sorted.
+  bool isCrowded() const { return is_crowded_; }
   /// Whether another disc is in conflict with a disc, sees it, and comes before it: has a lower
   /// rank, or the same rank and a lower number.
   bool hasRival(std::size_t number) const;
@@ -100,6 +102,8 @@ class DiscGrid {
   static constexpr int kCrowd = 64;
   /// Every so many discs, sortCrowded() looks whether the cube of one is crowded.
   static constexpr std::size_t kProbes = 16;
+  /// The number of blocks that one task sorts.
+  static constexpr std::size_t kBlocksPerTask = 32;
 
   int levelOf(double radius) const {
     int level = 0;
@@ -167,7 +171,7 @@ class DiscGrid {
     return discs_[a].rank != discs_[b].rank ? discs_[a].rank < discs_[b].rank : a < b;
   }
   /// Whether a list has more than kCrowd discs.
-  bool isCrowded(std::int32_t first) const {
+  bool isLong(std::int32_t first) const {
     int count = 0;
     for (std::int32_t i = first; i >= 0 && count <= kCrowd; i = next_[i]) {
       ++count;
@@ -175,7 +179,7 @@ class DiscGrid {
     return count > kCrowd;
   }
   /// Sorts the discs of the crowded cubes of a block by comesBefore().
-  void sortCrowded(Block& block);
+  void sortCubes(Block& block);
 
   static double squaredDistance(const Vector3& a, const Vector3& b) {
     const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -188,8 +192,9 @@ class DiscGrid {
   std::vector<std::size_t> on_level_;          // the number of discs on each level
   std::vector<NoiseDisc> discs_;
   std::vector<std::int32_t> next_;  // for each disc the next one of the same cube, or -1
-  std::deque<Block> blocks_;        // in the order in which they were made
-  std::vector<Entry> table_;        // a hash table with open addressing
+  std::deque<Block> blocks_;
+  std::vector<Entry> table_;  // a hash table with open addressing
+  bool is_crowded_ = false;
 };
 
 template <typename Visit, typename IsPast>

@@ -107,7 +107,7 @@ void PoissonDiscSampling::accept() {
   }
   candidates_.clear();
   candidates_.insert(discs, threads_);
-  are_crowded_ = candidates_.sortCrowded(threads_);
+  candidates_.sortCrowded(threads_);
   for (Task& task : tasks_) {
     std::vector<NoiseDisc>().swap(task.outcome.discs);  // the grid has them now
   }
@@ -143,12 +143,8 @@ void PoissonDiscSampling::decide(Task& task) {
   for (std::size_t i = 0; i < count; ++i) {
     stride.step();
     const std::size_t number = task.first + i;
-    const NoiseDisc& own = candidates_.disc(number);
-    const bool is_lost =
-        are_crowded_
-            ? candidates_.hasRival(number)
-            : others.near(own.position, own.radius).conflict(own, static_cast<double>(number));
-    if (!is_lost) {
+    if (!others.hasRival(number)) {
+      const NoiseDisc& own = candidates_.disc(number);
       hits.push_back({&own, &outcome.candidates[i].cell, false});
       has_won[i] = true;
       task.discs.push_back(own);

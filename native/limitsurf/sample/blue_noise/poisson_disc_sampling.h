@@ -74,7 +74,6 @@ class PoissonDiscSampling {
   std::vector<Task> tasks_;
   std::vector<Location> points_;
   DiscGrid accepted_, candidates_;
-  bool are_crowded_ = false;  // whether many candidates of this round are in one place
 };
 
 }  // namespace limitsurf

@@ -23,16 +23,16 @@ Point cross(const Point& a, const Point& b) {
 }
 
 /// Replaces the Bernstein coefficients of a polynomial of degree 5 by those of its part between t0
-/// and t1.
+/// and t1. Parts of long and narrow patches go from 0 to 1 along one of the parameters.
 void cut(Point* p, int stride, double t0, double t1) {
   constexpr int kDegree = 5;
-  for (int level = 1; level <= kDegree; ++level) {
+  for (int level = 1; t1 < 1 && level <= kDegree; ++level) {
     for (int i = kDegree; i >= level; --i) {
       p[stride * i] = p[stride * (i - 1)] + t1 * (p[stride * i] - p[stride * (i - 1)]);
     }
   }
   const double rest = t0 / t1;
-  for (int level = 1; level <= kDegree; ++level) {
+  for (int level = 1; t0 > 0 && level <= kDegree; ++level) {
     for (int i = 0; i <= kDegree - level; ++i) {
       p[stride * i] += rest * (p[stride * (i + 1)] - p[stride * i]);
     }

@@ -66,7 +66,7 @@ class RaySearch {
       WideTree::Row from;
       unsigned met = box_ray_.meet(node, begin_, roundedUp(end()), from);
       if (node.closer >= 0) {
-        met = lookCloser(data_.closerBoxes(node), met);
+        met = lookCloser(data_.closerBoxes(node), met, from);
       }
       open_.add(node, from, from, met, next_.part);
       return takeNext();
@@ -115,14 +115,18 @@ class RaySearch {
   /// many take about a millisecond.
   static constexpr std::int64_t kCellsPerPass = 4096;
 
-  /// Of the children of a node whose bits are set, returns those whose closer boxes the ray meets
-  /// as well, if they have such boxes.
-  unsigned lookCloser(const CloserBoxes& closer, unsigned bits) const {
+  /// Raises where the ray enters the boxes of those children of a node whose bits are set and that
+  /// have closer boxes. Returns the bits of those whose boxes it meets.
+  unsigned lookCloser(const CloserBoxes& closer, unsigned bits, WideTree::Row& from) const {
     for (int child = 0; child < WideTree::kWidth; ++child) {
-      double from = start();
-      if (((bits & closer.children) >> child & 1) != 0 &&
-          !closer.boxes[child].meets(ray_, margin(), from, end())) {
-        bits &= ~(1u << child);
+      if (((bits & closer.children) >> child & 1) != 0) {
+        double enters = start();
+        // Leaves are widened by the margin along their own axes, whose corners may lie outside a
+        // box that is widened only once.
+        bits &=
+            ~(static_cast<unsigned>(!closer.boxes[child].meets(ray_, 2 * margin(), enters, end()))
+              << child);
+        from[child] = std::max(from[child], roundedDown(enters));
       }
     }
     return bits;

@@ -2,7 +2,7 @@
 #include "limitsurf/search/tree/closer_boxes.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
+#include <utility>
 
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/search/tree/box_points.h"
@@ -40,7 +40,7 @@ class Maker {
     for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
       stride.step();
       WideTree::Node& node = nodes_[i];
-      CloserBoxes closer;
+      CloserBoxes closer{};
       for (int child = 0; child < node.count; ++child) {
         const std::int32_t place = node.children[child];
         const double half_area = boxOf(node, child).halfArea();
@@ -66,6 +66,7 @@ class Maker {
         made_.push_back(closer);
       }
     }
+    made_.shrink_to_fit();
     return std::move(made_);
   }
 

@@ -30,7 +30,8 @@ class NormalCones;
 ///
 /// The top of the tree has regular patches as leaves, and nests: the parts of the tree below Ptex
 /// faces with extraordinary vertices, which have many leaves each. A nest is made when a search
-/// first reaches it, so that a few searches in each pose of a surface do not pay for all.
+/// first reaches it, so that a few searches in each pose of a surface do not pay for all. Nodes of
+/// the top over long and narrow faces have boxes of their own directions (CloserBoxes) besides.
 struct SearchTree {
   SearchTree(const LimitSurface& limit_surface, int threads);
   ~SearchTree();

@@ -14,6 +14,7 @@
 
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
+#include "support/cages/cage_builder.h"
 #include "support/cages/meshes.h"
 #include "support/cages/query_cages.h"
 #include "support/random.h"
@@ -52,7 +53,9 @@ class Walk {
       boxes.push_back(box);
       const bool is_close = node.closer >= 0 && (tree_.closerBoxes(node).children >> i & 1) != 0;
       if (is_close) {
-        closer_boxes.push_back(tree_.closerBoxes(node).boxes[i]);
+        const LeafBox& box_below = tree_.closerBoxes(node).boxes[i];
+        expectWithin(box_below, closer_boxes);
+        closer_boxes.push_back(box_below);
         ++closer;
       }
       visit({node.children[i], 0, at.part}, boxes, closer_boxes);
@@ -89,10 +92,33 @@ class Walk {
           EXPECT_LE((in_boxes - box.high).maxCoeff(), kRounding);
         }
         EXPECT_LE(std::sqrt(leaf.box.squaredDistance(in_boxes)), kRounding);
+        expectWithin(leaf.box, closer_boxes);
         for (const LeafBox& box : closer_boxes) {
           EXPECT_EQ(box.squaredDistance(in_boxes), 0);
         }
         ++points;
+      }
+    }
+  }
+
+  /// A box is what its rounded axes bound, which is more than what its corners span.
+  static void expectWithin(const LeafBox& inner, const std::vector<LeafBox>& boxes) {
+    Eigen::Matrix3d axes;
+    Vector3 middle = Vector3::Zero();
+    for (int i = 0; i < 3; ++i) {
+      axes.row(i) = inner.axis(i);
+    }
+    for (int i = 0; i < 8; ++i) {
+      middle += inner.corner(i).head<3>().matrix() / 8;
+    }
+    const Eigen::Matrix3d back = axes.inverse();
+    for (int i = 0; i < 8; ++i) {
+      Vector3 along;
+      for (int axis = 0; axis < 3; ++axis) {
+        along[axis] = (i >> axis & 1 ? 1 : -1) * double{inner.half(axis)};
+      }
+      for (const LeafBox& box : boxes) {
+        EXPECT_EQ(box.squaredDistance(middle + back * along), 0);
       }
     }
   }
@@ -178,6 +204,56 @@ TEST(SearchTree, LongThinFacesLieInCloserBoxes) {
     EXPECT_LE(closerBoxes(slenderSheet(1, seed)), 1);
   }
   EXPECT_EQ(closerBoxes(pole(12)), 0);
+}
+
+/// Points and rays from near and far, also beside a face that is far away. No sample of the surface
+/// is closer than the closest point, and rays that are aimed at samples hit there or before.
+TEST(SearchTree, SearchesAmongLongThinFacesMissNothing) {
+  constexpr int kSide = 24;
+  for (const bool has_outlier : {false, true}) {
+    CageBuilder builder;
+    builder.append(slenderSheet(300, 4));
+    if (has_outlier) {
+      builder.append(placed(fullGrid(1, 1), 1, Vector3(3e8, 1e8, -2e8)));
+    }
+    const LimitSurface surface = limitSurface(builder.build());
+    const SearchTree tree(surface, 1);
+    ASSERT_EQ(tree.crowd.has_value(), has_outlier);
+    const SurfaceSearch search(surface);
+    std::vector<Location> at;
+    for (int face = 0; face + (has_outlier ? 1 : 0) < surface.faceCount(); ++face) {
+      for (int i = 0; i <= kSide; ++i) {
+        for (int j = 0; j <= kSide; ++j) {
+          at.push_back({face, double(i) / kSide, double(j) / kSide});
+        }
+      }
+    }
+    const Points samples = surface.evaluate(at, Derivatives::none, false).position;
+    const double size = (samples.colwise().maxCoeff() - samples.colwise().minCoeff()).norm();
+    Random random(7);
+    constexpr int kPoints = 300;
+    Points points(kPoints, 3), directions(kPoints, 3);
+    std::vector<double> lengths(kPoints);
+    for (int i = 0; i < kPoints; ++i) {
+      const double away[] = {1e-6, 1e-3, 0.05, 1, 100};
+      const Vector3 direction = random.vector(1).normalized();
+      const int sample = random.below(static_cast<int>(samples.rows()));
+      lengths[i] = size * away[i % 5];
+      points.row(i) = samples.row(sample) - lengths[i] * direction.transpose();
+      directions.row(i) = direction.transpose();
+    }
+    const double error = 2e-12 * size + (has_outlier ? 2e-12 * 4e8 : 0);
+    const Hits closest = search.closest(points), hits = search.rayCast(points, directions);
+    for (int i = 0; i < kPoints; ++i) {
+      const double nearest = (samples.rowwise() - points.row(i)).rowwise().norm().minCoeff();
+      EXPECT_LE(closest.distance[i], nearest + error) << i;
+      EXPECT_NEAR((closest.position.row(i) - points.row(i)).norm(), closest.distance[i], error);
+      ASSERT_GE(hits.at[i].face, 0) << i;
+      EXPECT_LE(hits.distance[i], lengths[i] + 1e3 * error) << i;
+      const Points met = surface.evaluate({&hits.at[i], 1}, Derivatives::none, false).position;
+      EXPECT_LE((points.row(i) + hits.distance[i] * directions.row(i) - met).norm(), error);
+    }
+  }
 }
 
 /// After as many searches as there are nests, no search has to make one.
