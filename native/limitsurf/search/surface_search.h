@@ -30,7 +30,8 @@ struct RayHits : Hits {
 
 /// Bound on the error of a distance, relative to the diagonal of the control mesh's bounding box:
 /// by how much the distance of the closest point exceeds the true minimum, and by how much a hit is
-/// off the ray and along it. For rays it holds for origins within 1,000 diagonals of the mesh.
+/// off the ray. Along the ray, a hit is off by at most this divided by the sine of the angle
+/// between ray and surface. For rays it holds for origins within 1,000 diagonals of the mesh.
 /// Closest points are found as exactly from any distance, although the rounding of a number as
 /// large as the distance itself may exceed the bound. So may the rounding of a location to doubles
 /// next to a vertex with many faces that is not at (0, 0) of its faces: neighbouring locations are
