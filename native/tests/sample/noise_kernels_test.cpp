@@ -33,6 +33,13 @@ Vector3 randomVector(Random& random) {
   return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
 }
 
+Box boxOfRandomVectors() {
+  Box box;
+  box.include(Vector3(-1, -1, -1));
+  box.include(Vector3(1, 1, 1));
+  return box;
+}
+
 std::vector<NoiseDisc> randomDiscs(Random& random, int count, double least, double most) {
   std::vector<NoiseDisc> discs(static_cast<std::size_t>(count));
   for (NoiseDisc& disc : discs) {
@@ -148,9 +155,7 @@ TEST(NoiseKernels, DiscsBeyondMeasureAreInConflict) {
 /// Both on one level of radii and on many, with any number of threads, in several steps.
 TEST(DiscGrid, FindsAllDiscsThatAreInConflict) {
   Random random(3);
-  Box box;
-  box.include(Vector3(-1, -1, -1));
-  box.include(Vector3(1, 1, 1));
+  const Box box = boxOfRandomVectors();
   for (const double most : {0.1, 0.9}) {
     std::vector<NoiseDisc> all;
     DiscGrid grid(box, 0.1, most);
@@ -189,9 +194,7 @@ TEST(DiscGrid, FindsAllDiscsThatAreInConflict) {
 /// Where many discs are in one place, and in others around it where few are; with equal ranks too.
 TEST(DiscGrid, FindsRivalsWhereDiscsAreCrowded) {
   Random random(4);
-  Box box;
-  box.include(Vector3(-1, -1, -1));
-  box.include(Vector3(1, 1, 1));
+  const Box box = boxOfRandomVectors();
   for (const double most : {0.05, 0.7}) {
     for (const double crowd : {1., 0.02, 0.}) {
       std::vector<NoiseDisc> discs = randomDiscs(random, 5000, 0.05, most);
