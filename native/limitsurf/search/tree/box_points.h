@@ -41,6 +41,11 @@ class BoxPoints {
     }
   }
 
+  void add(const std::vector<Padded>& points) {
+    for (const Padded& point : points) {
+      points_.push_back(point - origin_);
+    }
+  }
   void add(const BoxF& box) {
     for (int corner = 0; corner < 8; ++corner) {
       Padded point = Padded::Zero();
@@ -52,14 +57,6 @@ class BoxPoints {
   }
 
   void reserve(std::size_t count) { points_.reserve(count); }
-  std::size_t size() const { return points_.size(); }
-  Vector3 mean() const {
-    Padded sum = Padded::Zero();
-    for (const Padded& point : points_) {
-      sum += point;
-    }
-    return sum.head<3>().matrix() / static_cast<double>(points_.size());
-  }
   Vector3 point(std::size_t i) const { return points_[i].head<3>(); }
 
   BoxF axisAligned() const {
@@ -74,6 +71,8 @@ class BoxPoints {
   OrientedBox<Real> oriented(const Vector3& along, const Vector3& across) const {
     return {points_, along, across};
   }
+  /// A box along the axes along which the points lie farthest apart.
+  LeafBox alongPrincipalAxes() const;
 
  private:
   Padded origin_;

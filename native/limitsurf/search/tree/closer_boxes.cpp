@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/tree/closer_boxes.h"
 
-#include <Eigen/Eigenvalues>
 #include <utility>
 
 #include "limitsurf/interruption_point.h"
@@ -19,7 +18,7 @@ constexpr double kSmaller = 0.5;
 /// Over fewer leaves a box has the axes of the largest of them.
 constexpr std::int32_t kFewLeaves = 8;
 
-/// The number of leaves under a node, and the sum of the largest faces of their boxes.
+/// The number of leaves and nests under a node, and the sum of the largest faces of their boxes.
 struct Content {
   std::int32_t leaves = 0;
   double area = 0;
@@ -32,8 +31,9 @@ struct Content {
 
 class Maker {
  public:
-  Maker(LargePageVector<WideTree::Node>& nodes, const LargePageVector<SearchLeaf>& leaves)
-      : nodes_(nodes), leaves_(leaves), contents_(nodes.size()) {}
+  Maker(LargePageVector<WideTree::Node>& nodes, const LargePageVector<SearchLeaf>& leaves,
+        const NestBoxes& nests)
+      : nodes_(nodes), leaves_(leaves), nests_(nests), contents_(nodes.size()) {}
 
   std::vector<CloserBoxes> make() {
     InterruptionStride stride;
@@ -48,15 +48,19 @@ class Maker {
         if (WideTree::isLeaf(place)) {
           all.add({1, leafOf(place).box.largestFace()});
         } else if (!isNode(place)) {
-          all.add({1, half_area});  // a nest, whose leaves are not known
+          // Nests have the numbers after those of all nodes. What is in most of them is not known.
+          const LeafBox* const own = nests_.find(static_cast<std::size_t>(place) - nodes_.size());
+          all.add({1, own ? own->largestFace() : half_area});
+          if (own && own->halfArea() <= kSmaller * half_area) {
+            closer.set(child, *own);
+          }
         } else {
           const Content& content = contents_[static_cast<std::size_t>(place)];
           all.add(content);
           if (content.area <= kNearlyEmpty * half_area) {
             const LeafBox box = boxAround(nodes_[static_cast<std::size_t>(place)], content.leaves);
             if (box.halfArea() <= kSmaller * half_area) {
-              closer.boxes[child] = box;
-              closer.children |= 1u << child;
+              closer.set(child, box);
             }
           }
         }
@@ -104,34 +108,20 @@ class Maker {
         points.add(boxOf(node, child));
       }
     }
-    const Axes axes = largest && leaves < kFewLeaves ? axesOf(*largest) : axesOf(points);
-    LeafBox box = points.oriented<float>(axes.along, axes.across);
+    LeafBox box = largest && leaves < kFewLeaves ? alongAxesOf(*largest, points)
+                                                 : points.alongPrincipalAxes();
     box.widenForRoundedAxes();
     return box;
   }
 
-  struct Axes {
-    Vector3 along, across;
-  };
-  static Axes axesOf(const LeafBox& box) {
+  static LeafBox alongAxesOf(const LeafBox& box, const BoxPoints& points) {
     const auto [longest, second] = box.longestAxes();
-    return {box.axis(longest), box.axis(second)};
-  }
-  /// The axes along which points lie farthest apart.
-  static Axes axesOf(const BoxPoints& points) {
-    const Vector3 mean = points.mean();
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vector3 off = points.point(i) - mean;
-      spread += off * off.transpose();
-    }
-    const Eigen::Matrix3d axes =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
-    return {axes.col(2), axes.col(1)};
+    return points.oriented<float>(box.axis(longest), box.axis(second));
   }
 
   LargePageVector<WideTree::Node>& nodes_;
   const LargePageVector<SearchLeaf>& leaves_;
+  const NestBoxes& nests_;
   std::vector<Content> contents_;  // of each node
   std::vector<CloserBoxes> made_;
 };
@@ -139,8 +129,9 @@ class Maker {
 }  // namespace
 
 std::vector<CloserBoxes> makeCloserBoxes(LargePageVector<WideTree::Node>& nodes,
-                                         const LargePageVector<SearchLeaf>& leaves) {
-  return Maker(nodes, leaves).make();
+                                         const LargePageVector<SearchLeaf>& leaves,
+                                         const NestBoxes& nests) {
+  return Maker(nodes, leaves, nests).make();
 }
 
 }  // namespace limitsurf

@@ -2,6 +2,7 @@
 #include "limitsurf/search/tree/leaf_maker.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -79,25 +80,14 @@ int LeafMaker::stepsBefore(const SurfacePiece& core) const {
   return std::abs(on.us + on.ut) == 1 ? 2 : 1;
 }
 
-LeafMaker::BoxedArea LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Padded low = Padded::Constant(kInfinity), high = -low;
-  double area = 0;
-  const auto include = [&](const Padded& point) {
-    low = low.min(point);
-    high = high.max(point);
-  };
-  const auto includePatch = [&](const BezierPatch& patch) {
-    for (const Padded& point : patch.points) {
-      include(patch.anchor + point);
-    }
-    area += cornerArea(patch);
-  };
+template <typename OnPatch, typename OnRest>
+void LeafMaker::visit(const std::vector<SurfacePiece>& pieces, const OnPatch& onPatch,
+                      const OnRest& onRest) const {
   SurfacePatches::SplitCore split;
   std::vector<Padded> rest_points;
   for (const SurfacePiece& piece : pieces) {
     if (!piece.isCore()) {
-      includePatch(patches_.patch(piece));
+      onPatch(patches_.patch(piece));
       continue;
     }
     const bool is_of_ring = isOfRing(piece);
@@ -106,18 +96,45 @@ LeafMaker::BoxedArea LeafMaker::boxAround(const std::vector<SurfacePiece>& piece
       patches_.splitPatches(rest, split);
       rest = split.core;
       for (const BezierPatch& patch : split.patches) {
-        includePatch(patch);
+        onPatch(patch);
       }
     }
     if (!is_of_ring) {
       rest_points.clear();
       patches_.appendRestPoints(split, rest_points);
-      for (const Padded& point : rest_points) {
-        include(point);
-      }
+      onRest(rest_points);
     }
   }
+}
+
+LeafMaker::BoxedArea LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Padded low = Padded::Constant(kInfinity), high = -low;
+  double area = 0;
+  const auto include = [&](const Padded& point) {
+    low = low.min(point);
+    high = high.max(point);
+  };
+  visit(
+      pieces,
+      [&](const BezierPatch& patch) {
+        for (const Padded& point : patch.points) {
+          include(patch.anchor + point);
+        }
+        area += cornerArea(patch);
+      },
+      [&](const std::vector<Padded>& points) {
+        std::for_each(points.begin(), points.end(), include);
+      });
   return {{low.head<3>().matrix() - middle_, high.head<3>().matrix() - middle_}, area};
+}
+
+LeafBox LeafMaker::orientedBoxAround(const std::vector<SurfacePiece>& pieces) const {
+  BoxPoints points(middle_);
+  visit(
+      pieces, [&](const BezierPatch& patch) { points.add(patch); },
+      [&](const std::vector<Padded>& rest) { points.add(rest); });
+  return points.alongPrincipalAxes();
 }
 
 }  // namespace limitsurf

@@ -38,8 +38,15 @@ class LeafMaker {
   /// A box around the leaves of some pieces of a face, but for those leaves that are of whole
   /// rings. It is empty if there are no others.
   BoxedArea boxAround(const std::vector<SurfacePiece>& pieces) const;
+  /// The same as an oriented box. There must be such leaves.
+  LeafBox orientedBoxAround(const std::vector<SurfacePiece>& pieces) const;
 
  private:
+  /// Calls onPatch(patch) and onRest(points) for what contains these leaves.
+  template <typename OnPatch, typename OnRest>
+  void visit(const std::vector<SurfacePiece>& pieces, const OnPatch& onPatch,
+             const OnRest& onRest) const;
+
   const SurfacePatches& patches_;
   const SearchRings& rings_;
   const Vector3 middle_;

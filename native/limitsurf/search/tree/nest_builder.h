@@ -17,20 +17,19 @@ class NestBuilder {
   NestBuilder(const SurfacePatches& patches, const LeafMaker& maker)
       : patches_(patches), maker_(maker) {}
 
-  /// What a nest is made of.
-  struct Leaves {
-    std::vector<LeafMaker::Leaf> leaves;
-    std::vector<BezierPatch> patches;  ///< those of cores are not set
-  };
-
-  /// The leaves of the pieces of a face.
-  Leaves leaves(const std::vector<SurfacePiece>& pieces) const;
   /// The nest of the pieces of a face. It must have at least one leaf.
   BuiltPart build(const std::vector<SurfacePiece>& pieces) const;
   /// The number of its leaves.
   std::size_t leafCount(const std::vector<SurfacePiece>& pieces) const;
 
  private:
+  /// What a nest is made of.
+  struct Leaves {
+    std::vector<LeafMaker::Leaf> leaves;
+    std::vector<BezierPatch> patches;  ///< those of cores are not set
+  };
+  Leaves leaves(const std::vector<SurfacePiece>& pieces) const;
+
   const SurfacePatches& patches_;
   const LeafMaker& maker_;
 };

@@ -17,11 +17,12 @@ namespace {
 constexpr std::size_t kTilesPerTask = 1024, kLeavesPerTask = 1024;
 /// The number of nests that one task makes: less than a millisecond.
 constexpr std::size_t kNestsPerTask = 64;
-/// A face is a nest only if its area is at least this share of half the area of its box. A long and
-/// thin face that lies aslant has a box that is nearly empty: searches would enter the nests of
-/// most faces around a pole, where few leaves are near. The share is 0.06 to 0.35 for the triangles
-/// of a wavy sheet, and less than 0.05 around a pole of 512 faces.
-constexpr double kLeastFilled = 0.05;
+/// A nest has an oriented box if its area is at most this share of half the area of its other box.
+/// A long and thin face that lies aslant has a box along the coordinate axes that is nearly empty:
+/// searches would enter the nests of most faces around a pole, where few leaves are near. The share
+/// is 0.06 to 0.35 for the triangles of a wavy sheet, and less than 0.05 around a pole of 512
+/// faces.
+constexpr double kThin = 0.05;
 
 }  // namespace
 
@@ -31,6 +32,9 @@ struct SearchTree::Pieces {
   std::vector<BoxF> leaf_boxes;
   std::vector<Tiles> nests;
   std::vector<BoxF> nest_boxes;
+  /// The numbers of the nests that are long and thin, and their oriented boxes.
+  std::vector<std::size_t> thin_nests;
+  std::vector<LeafBox> thin_boxes;
   NestStore::Room room;  ///< for the nests
 
   void add(const LeafMaker::Leaf& leaf) {
@@ -43,6 +47,10 @@ struct SearchTree::Pieces {
     };
     append(leaves, other.leaves);
     append(leaf_boxes, other.leaf_boxes);
+    for (const std::size_t nest : other.thin_nests) {
+      thin_nests.push_back(nests.size() + nest);
+    }
+    append(thin_boxes, other.thin_boxes);
     append(nests, other.nests);
     append(nest_boxes, other.nest_boxes);
     room.leaves += other.room.leaves;
@@ -103,12 +111,14 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
   nest_tiles_.reserve(nest_count);
   std::vector<std::int32_t> places;
   places.reserve(order.size());
+  std::vector<std::size_t> nest_places(nest_count);
   for (const std::int32_t i : order) {
     const auto number = static_cast<std::size_t>(i);
     if (number < leaf_count) {
       places.push_back(~static_cast<std::int32_t>(top_leaves_.size()));
       top_leaves_.push_back(all.leaves[number]);
     } else {
+      nest_places[number - leaf_count] = nest_tiles_.size();
       places.push_back(first_nest_ + static_cast<std::int32_t>(nest_tiles_.size()));
       nest_tiles_.push_back(all.nests[number - leaf_count]);
     }
@@ -120,7 +130,15 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       }
     }
   }
-  closer_boxes_ = makeCloserBoxes(top_nodes_, top_leaves_);
+  NestBoxes thin_nests;
+  if (!all.thin_nests.empty()) {
+    thin_nests.boxes = std::move(all.thin_boxes);
+    thin_nests.of_nest.assign(nest_count, -1);
+    for (std::size_t i = 0; i < all.thin_nests.size(); ++i) {
+      thin_nests.of_nest[nest_places[all.thin_nests[i]]] = static_cast<std::int32_t>(i);
+    }
+  }
+  closer_boxes_ = makeCloserBoxes(top_nodes_, top_leaves_, thin_nests);
   constexpr std::size_t kMostPatches = kPatchBytes / sizeof(BezierPatch);
   if (leaf_count <= kMostPatches) {
     top_patches_.resize(leaf_count);
@@ -164,11 +182,9 @@ void SearchTree::addFace(const Tiles& tiles, Pieces& out) const {
     return;  // all of the face belongs to leaves of whole rings
   }
   const BoxF bounds(box);
-  if (area < kLeastFilled * double{bounds.halfArea()}) {
-    for (const LeafMaker::Leaf& leaf : builder.leaves(pieces).leaves) {
-      out.add(leaf);
-    }
-    return;
+  if (area < kThin * double{bounds.halfArea()}) {
+    out.thin_nests.push_back(out.nests.size());
+    out.thin_boxes.push_back(maker_.orientedBoxAround(pieces));
   }
   out.nests.push_back(tiles);
   out.nest_boxes.push_back(bounds);
