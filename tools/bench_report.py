@@ -48,6 +48,7 @@ RUNS = {
     "million": Run("### A million quads", (("--large",),)),
     "semi-sharp": Run("### Every edge semi-sharp", (("--semi-sharp=100",), ("--semi-sharp=200",))),
     "queries": Run("### Queries", (("--queries",),)),
+    "interpolation": Run("### Beside Embree's interpolation", (("--interpolate",),)),
 }
 #: The numbers of samples on a face whose times are drawn
 PER_FACE = (1, 2, 5, 10, 30, 100, 300)

@@ -7,11 +7,12 @@
 //   limitsurf_bench --samples=20000       the number of locations in a batch (default 100000)
 //   limitsurf_bench --fresh-memory        results in memory newly allocated by the system
 //   limitsurf_bench --save=FOLDER         writes the meshes and locations of the table of
-//   evaluation limitsurf_bench --large[=1000]        time and memory for opening a grid of 1000 x
-//   1000 quads limitsurf_bench --semi-sharp[=100]    the same for 100 x 100 quads whose edges are
-//   semi-sharp limitsurf_bench --queries[=1000000]   closest points and rays beside Embree, and
-//   random points limitsurf_bench --uv[=4096]           UV maps inverted, for an image with this
-//   many texels a side
+//                                         evaluation
+//   limitsurf_bench --large[=1000]        time and memory for opening a grid of 1000 x 1000 quads
+//   limitsurf_bench --semi-sharp[=100]    the same for 100 x 100 quads whose edges are semi-sharp
+//   limitsurf_bench --queries[=1000000]   closest points and rays beside Embree, and random points
+//   limitsurf_bench --interpolate[=100000]  evaluation beside Embree's rtcInterpolateN
+//   limitsurf_bench --uv[=4096]           UV maps inverted, for an image with so many texels a side
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 #include <opensubdiv/version.h>
@@ -30,6 +31,7 @@
 #include "bench/uv/uv_benchmarks.h"
 #ifdef LIMITSURF_BENCH_EMBREE
 #include "bench/search/search_benchmarks.h"
+#include "bench/surface/interpolation_benchmarks.h"
 #endif
 #include "bench/sample/sampling_benchmarks.h"
 #include "bench/support/ratio_reporter.h"
@@ -100,7 +102,7 @@ int main(int argc, char** argv) {
   static char time[] = "--benchmark_min_time=0.03";
   std::vector<char*> arguments = {argv[0], interleave, repetitions, time};
   int sample_count = 100000;
-  int large_side = 0, semi_sharp_side = 0, query_count = 0, uv_side = 0;
+  int large_side = 0, semi_sharp_side = 0, query_count = 0, interpolation_count = 0, uv_side = 0;
   bool is_memory_fresh = false;
   std::string saved_to;
   for (int i = 1; i < argc; ++i) {
@@ -112,6 +114,8 @@ int main(int argc, char** argv) {
       semi_sharp_side = sharp_side;
     } else if (const int queries = valueOf(argv[i], "--queries", 1000000)) {
       query_count = queries;
+    } else if (const int interpolations = valueOf(argv[i], "--interpolate", 100000)) {
+      interpolation_count = interpolations;
     } else if (const int texels = valueOf(argv[i], "--uv", 4096)) {
       uv_side = texels;
     } else if (std::strncmp(argv[i], "--save=", 7) == 0) {
@@ -130,8 +134,12 @@ int main(int argc, char** argv) {
     if (large_side > 0) return limitsurf::bench::measureLargeMesh(large_side);
     if (semi_sharp_side > 0) return limitsurf::bench::measureSemiSharpMesh(semi_sharp_side);
     if (uv_side > 0) return limitsurf::bench::measureUvMaps(uv_side);
-    if (query_count > 0) {
+    if (query_count > 0 || interpolation_count > 0) {
 #ifdef LIMITSURF_BENCH_EMBREE
+      if (interpolation_count > 0) {
+        recycleMemory();
+        return limitsurf::bench::measureInterpolation(interpolation_count);
+      }
       if (saved_to.empty()) return limitsurf::bench::measureSearches(query_count);
       limitsurf::bench::saveSearches(saved_to, query_count);
       return 0;
