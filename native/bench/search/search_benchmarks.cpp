@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/support/embree_peer.h"
+#include "bench/support/median.h"
 #include "bench/support/mesh_arrays.h"
 #include "bench/support/numpy_file.h"
 #include "bench/support/process_cost.h"
@@ -30,11 +31,6 @@ namespace {
 constexpr int kSide = 100;
 constexpr int kPeerLevel = 4;
 constexpr int kRepetitions = 3;
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 struct Seconds {
   std::vector<double> wall, cpu;  ///< one for each repetition; cpu is that of all threads

@@ -6,15 +6,10 @@
 #include <cstdio>
 #include <regex>
 
+#include "bench/support/median.h"
+
 namespace limitsurf::bench {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return NAN;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
-}
 
 std::string inColumns(const std::string& row) {
   return std::regex_replace(row, std::regex("/"), " | ");

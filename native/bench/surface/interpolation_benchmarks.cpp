@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
 #include "bench/support/face_classes.h"
 #include "bench/support/location_samples.h"
+#include "bench/support/median.h"
 #include "bench/support/mesh_arrays.h"
 #include "bench/support/process_cost.h"
 #include "limitsurf/surface/limit_surface.h"
@@ -19,11 +21,6 @@ namespace limitsurf::bench {
 namespace {
 
 constexpr int kRepetitions = 9;
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 /// A mesh of quads as a subdivision surface of Embree.
 class EmbreeSurface {
@@ -153,7 +150,7 @@ int measureInterpolation(int count) {
   compare("corner", every_class, samples(FaceClass::corner));
   const auto all_faces = [](const MeshArrays& cage) {
     std::vector<int> faces(static_cast<std::size_t>(cage.faceCount()));
-    for (std::size_t i = 0; i < faces.size(); ++i) faces[i] = static_cast<int>(i);
+    std::iota(faces.begin(), faces.end(), 0);
     return faces;
   };
   compare("multi-EV", crosses, uniformSamples(all_faces(crosses), count));

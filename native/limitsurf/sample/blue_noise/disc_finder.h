@@ -36,10 +36,15 @@ class DiscFinder {
   /// are around it.
   bool hasRival(std::size_t number) {
     const NoiseDisc& own = grid_.disc(number);
-    if (grid_.sides_.size() > 1 ? grid_.isCrowded() : placeAt(own.position).is_crowded) {
+    if (!grid_.isCrowded()) {
+      return near(own.position, own.radius).conflict(own, static_cast<double>(number));
+    }
+    if (grid_.sides_.size() > 1) {
       return grid_.hasRival(number);
     }
-    return near(own.position, own.radius).conflict(own, static_cast<double>(number));
+    const Place& place = placeAt(own.position);
+    return place.is_crowded ? grid_.hasRival(number)
+                            : place.near.conflict(own, static_cast<double>(number));
   }
   /// Those that the last search has found: most of the discs near other positions as well, if these
   /// are close to that of the search.
@@ -78,9 +83,8 @@ class DiscFinder {
   struct Place {
     bool is_known = false;
     Index low[3];
-    bool
-        is_crowded;  ///< one of the cubes is sorted, so that `near` would be long; it is empty then
-    NearDiscs near;
+    bool is_crowded;  ///< one of the cubes is sorted
+    NearDiscs near;   ///< if not crowded; the list would be long
 
     bool holds(const Index at[3]) const { return is_known && std::equal(at, at + 3, low); }
   };

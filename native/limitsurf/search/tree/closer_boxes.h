@@ -25,10 +25,10 @@ struct CloserBoxes {
 /// Oriented boxes around the long and narrow ones among the nests of a tree.
 struct NestBoxes {
   std::vector<LeafBox> boxes;
-  std::vector<std::int32_t> of_nest;  ///< the box of each nest, or -1; empty if there are no boxes
+  std::vector<std::int32_t> of_nest;  ///< the box of each nest, or -1
 
   const LeafBox* find(std::size_t nest) const {
-    return of_nest.empty() || of_nest[nest] < 0 ? nullptr : &boxes[of_nest[nest]];
+    return of_nest[nest] < 0 ? nullptr : &boxes[of_nest[nest]];
   }
 };
 

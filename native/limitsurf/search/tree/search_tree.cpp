@@ -32,9 +32,7 @@ struct SearchTree::Pieces {
   std::vector<BoxF> leaf_boxes;
   std::vector<Tiles> nests;
   std::vector<BoxF> nest_boxes;
-  /// The numbers of the nests that are long and thin, and their oriented boxes.
-  std::vector<std::size_t> thin_nests;
-  std::vector<LeafBox> thin_boxes;
+  NestBoxes thin;        ///< of the nests
   NestStore::Room room;  ///< for the nests
 
   void add(const LeafMaker::Leaf& leaf) {
@@ -47,10 +45,11 @@ struct SearchTree::Pieces {
     };
     append(leaves, other.leaves);
     append(leaf_boxes, other.leaf_boxes);
-    for (const std::size_t nest : other.thin_nests) {
-      thin_nests.push_back(nests.size() + nest);
+    const auto boxes = static_cast<std::int32_t>(thin.boxes.size());
+    for (const std::int32_t box : other.thin.of_nest) {
+      thin.of_nest.push_back(box < 0 ? box : boxes + box);
     }
-    append(thin_boxes, other.thin_boxes);
+    append(thin.boxes, other.thin.boxes);
     append(nests, other.nests);
     append(nest_boxes, other.nest_boxes);
     room.leaves += other.room.leaves;
@@ -111,14 +110,15 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
   nest_tiles_.reserve(nest_count);
   std::vector<std::int32_t> places;
   places.reserve(order.size());
-  std::vector<std::size_t> nest_places(nest_count);
+  NestBoxes thin_nests{std::move(all.thin.boxes), {}};
+  thin_nests.of_nest.reserve(nest_count);
   for (const std::int32_t i : order) {
     const auto number = static_cast<std::size_t>(i);
     if (number < leaf_count) {
       places.push_back(~static_cast<std::int32_t>(top_leaves_.size()));
       top_leaves_.push_back(all.leaves[number]);
     } else {
-      nest_places[number - leaf_count] = nest_tiles_.size();
+      thin_nests.of_nest.push_back(all.thin.of_nest[number - leaf_count]);
       places.push_back(first_nest_ + static_cast<std::int32_t>(nest_tiles_.size()));
       nest_tiles_.push_back(all.nests[number - leaf_count]);
     }
@@ -128,14 +128,6 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       if (WideTree::isLeaf(node.children[i])) {
         node.children[i] = places[static_cast<std::size_t>(WideTree::leaf(node.children[i]))];
       }
-    }
-  }
-  NestBoxes thin_nests;
-  if (!all.thin_nests.empty()) {
-    thin_nests.boxes = std::move(all.thin_boxes);
-    thin_nests.of_nest.assign(nest_count, -1);
-    for (std::size_t i = 0; i < all.thin_nests.size(); ++i) {
-      thin_nests.of_nest[nest_places[all.thin_nests[i]]] = static_cast<std::int32_t>(i);
     }
   }
   closer_boxes_ = makeCloserBoxes(top_nodes_, top_leaves_, thin_nests);
@@ -182,10 +174,12 @@ void SearchTree::addFace(const Tiles& tiles, Pieces& out) const {
     return;  // all of the face belongs to leaves of whole rings
   }
   const BoxF bounds(box);
+  std::int32_t thin_box = -1;
   if (area < kThin * double{bounds.halfArea()}) {
-    out.thin_nests.push_back(out.nests.size());
-    out.thin_boxes.push_back(maker_.orientedBoxAround(pieces));
+    thin_box = static_cast<std::int32_t>(out.thin.boxes.size());
+    out.thin.boxes.push_back(maker_.orientedBoxAround(pieces));
   }
+  out.thin.of_nest.push_back(thin_box);
   out.nests.push_back(tiles);
   out.nest_boxes.push_back(bounds);
   const std::size_t leaves = builder.leafCount(pieces);
