@@ -144,6 +144,7 @@ def evaluating() -> Iterator[tuple[str, Call]]:
     yield "bounds of data", lambda: unwrapped.bounds(8)
     yield "tangent_frames", lambda: triangles.tangent_frames(unwrapped, *fewer)
     yield "tessellate", lambda: surface("middle").tessellate(3, corner_normals=True)
+    yield "tessellate, gigabytes", lambda: surface("middle").tessellate(4)
     yield "levels_within", lambda: triangles.levels_within(1e-2)
     yield "levels_of_length", lambda: triangles.levels_of_length(1e-3)
 
@@ -170,6 +171,7 @@ def sampling() -> Iterator[tuple[str, Call]]:
     yield "area, triangles", lambda: surface("triangles").area()
     yield "area, pole", lambda: surface("pole").area()
     yield "scatter_jittered", lambda: surface("quads").scatter_jittered(4)
+    yield "scatter_jittered, gigabytes", lambda: surface("quads").scatter_jittered(8)
     yield "scatter_uniform", lambda: ls.LimitSurface(mesh("triangles")).scatter_uniform(1_000_000)
     yield "scatter_blue_noise", lambda: surface("middle").scatter_blue_noise(count=100_000)
     yield (

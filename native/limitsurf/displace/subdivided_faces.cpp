@@ -10,6 +10,7 @@
 
 #include "limitsurf/displace/face_grid.h"
 #include "limitsurf/displace/subdivided_vertices.h"
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -192,7 +193,8 @@ std::vector<Location> SubdividedFaces::locate(const LocationBatch& at, int threa
   for (std::size_t row = 0; row < at.size(); ++row) {
     checkParameters(at[row], row);
   }
-  std::vector<Location> result(at.size());
+  std::vector<Location> result;
+  resizeGradually(result, at.size());
   parallelFor(at.size(), kLocationsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       result[row] = locate(at[row]);

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/sample/area_sampler_data.h"
 #include "limitsurf/sample/limited_cells.h"
 #include "limitsurf/sample/thinning.h"
@@ -22,7 +23,8 @@ constexpr std::size_t kSamplesPerReport = std::size_t{1} << 18;
 /// The first accepted candidate of each sample.
 std::vector<Location> allAccepted(const UniformCandidates& candidates, std::size_t count,
                                   int threads, const Progress& progress) {
-  std::vector<Location> result(count);
+  std::vector<Location> result;
+  resizeGradually(result, count);
   for (std::size_t first = 0; first < count; first += kSamplesPerReport) {
     report(progress, first, count);
     candidates.findFirst(first, std::min(kSamplesPerReport, count - first), result.data() + first,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/sample/density.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -13,6 +14,10 @@ namespace {
 
 /// Weights of vertices that go beyond this are divided by a power of two.
 constexpr double kLargestWeight = 1e100;
+
+/// A function that interpolates weights of 0 and above may round to a value below 0, by less than
+/// this part of its values nearby.
+constexpr double kRounding = 1e-12;
 
 bool isWeight(double value) { return value >= 0 && std::isfinite(value); }
 
@@ -57,7 +62,11 @@ Density::Density(const LimitSurface& surface, const Eigen::VectorXd& weights, in
 std::vector<double> Density::weights(Span<Location> at) const {
   std::vector<double> result(at.size(), 0);
   function_(at, result.data());
+  const double largest = result.empty() ? 0 : *std::max_element(result.begin(), result.end());
   for (std::size_t i = 0; i < at.size(); ++i) {
+    if (result[i] < 0 && result[i] >= -kRounding * largest) {
+      result[i] = 0;
+    }
     if (!isWeight(result[i])) {
       std::ostringstream message;
       message << "density is " << numberText(result[i]) << " at face " << at[i].face

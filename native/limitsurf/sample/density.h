@@ -44,8 +44,9 @@ class Density {
   /// 1).
   const std::vector<double>& corners() const { return corners_; }
 
-  /// The function's weights at the locations. Throws std::invalid_argument naming the first
-  /// location at which the function is negative, not finite or above its limit.
+  /// The function's weights at the locations. Those below 0 by less than 1e-12 of the largest one
+  /// count as 0: interpolated weights round. Throws std::invalid_argument naming the first location
+  /// at which the function is less than that, not finite or above its limit.
   std::vector<double> weights(Span<Location> at) const;
 
  private:

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "limitsurf/error.h"
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/random_bits.h"
 
@@ -51,7 +52,8 @@ std::vector<Location> scatterJittered(const LimitSurface& surface, Span<std::int
                                 std::to_string(faces.size()) + " faces; the limit is " +
                                 std::to_string(kMostLocations) + " locations");
   }
-  std::vector<Location> result(faces.size() * per_face);
+  std::vector<Location> result;
+  resizeGradually(result, faces.size() * per_face);
   const std::uint64_t key = keyOf(seed);
   parallelFor(result.size(), kLocationsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

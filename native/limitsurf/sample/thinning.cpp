@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -27,8 +28,9 @@ Thinning::Thinning(const UniformCandidates& candidates, const Density& density, 
       unit_(unit),
       threads_(threads),
       progress_(progress),
-      samples_(count),
-      largest_(limits_.areKnown() ? 1 : 0) {}
+      largest_(limits_.areKnown() ? 1 : 0) {
+  resizeGradually(samples_, count);
+}
 
 void Thinning::pilot(Span<Location> at) {
   for (std::size_t first = 0; first < at.size(); first += kSamplesPerReport) {
@@ -43,7 +45,8 @@ void Thinning::pilot(Span<Location> at) {
 }
 
 std::vector<Location> Thinning::run() {
-  std::vector<std::size_t> open(samples_.size());
+  std::vector<std::size_t> open;
+  resizeGradually(open, samples_.size());
   for (std::size_t i = 0; i < open.size(); ++i) {
     open[i] = i;
   }
@@ -63,7 +66,8 @@ std::vector<Location> Thinning::run() {
     }
   }
   report(progress_, 1, 1);
-  std::vector<Location> result(samples_.size());
+  std::vector<Location> result;
+  resizeGradually(result, samples_.size());
   std::transform(samples_.begin(), samples_.end(), result.begin(),
                  [](const Sample& sample) { return sample.at; });
   return result;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limitsurf/float_rounding.h"
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
@@ -204,7 +205,8 @@ class ClosestRows {
         // An angle of pi accepts all normals; a cosine of -2 keeps rounding from excluding any.
         least_cosine_(options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle)),
         at_(at) {
-    at_.assign(static_cast<std::size_t>(points.rows()), {});
+    at_.clear();
+    resizeGradually(at_, static_cast<std::size_t>(points.rows()));
   }
 
   void run() {

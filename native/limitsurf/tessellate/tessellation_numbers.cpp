@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -104,17 +105,12 @@ void TessellationNumbers::divide(int face, Divided& divided) const {
 }
 
 void TessellationNumbers::fill(Tessellation& result, int threads) const {
-  // The system hands out the memory of each when it is first written to, which takes long.
-  result.locations.resize(pointCount());
-  InterruptionPoint::pass();
+  resizeGradually(result.locations, pointCount());
   for (std::vector<int>* values : {&result.face_sizes, &result.base_face, &result.ptex_face}) {
-    values->resize(first_polygon_.back());
-    InterruptionPoint::pass();
+    resizeGradually(*values, first_polygon_.back());
   }
-  result.face_vertices.resize(first_corner_.back());
-  InterruptionPoint::pass();
-  result.corners.resize(first_corner_.back());
-  InterruptionPoint::pass();
+  resizeGradually(result.face_vertices, first_corner_.back());
+  resizeGradually(result.corners, first_corner_.back());
   std::vector<int> number_of_slot(slot_count_, -1);
   parallelFor(faces_.size(), kFacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

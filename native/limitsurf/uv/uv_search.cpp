@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
@@ -58,7 +59,7 @@ UvSearch::UvSearch(const UvPatches& map, int threads)
 MapLocations UvSearch::locate(const PlanePoints& points, int threads) const {
   const auto rows = static_cast<std::size_t>(points.rows());
   MapLocations out;
-  out.at.resize(rows);
+  resizeGradually(out.at, rows);
   out.overlap.resize(rows);
   out.flipped.resize(rows);
   parallelFor(rows, kPointsPerTask, threads, [&](std::size_t begin, std::size_t end) {

@@ -78,7 +78,13 @@ def explanation(text: str, positional: Sequence[object], named: Mapping[str, obj
 
 def _text(value: object) -> str:
     """A value in a short line."""
-    lines = (line.strip() for line in reprlib.repr(value).splitlines())
+    try:
+        text = reprlib.repr(value)
+    except ValueError:  # Python writes out no integer of more than some thousand digits
+        if not isinstance(value, int):
+            raise
+        return f"an integer of {value.bit_length()} bits"
+    lines = (line.strip() for line in text.splitlines())
     return " ".join(line for line in lines if line)
 
 

@@ -36,11 +36,15 @@ std::vector<std::int64_t> vectorOf(const Integers& array) {
   return {array.data(), array.data() + array.size()};
 }
 
+/// The two entries of an argument; [] stands for two empty arrays.
 std::pair<py::object, py::object> pairOf(const py::object& object, const char* name) {
   if (!py::isinstance<py::iterable>(object)) {
     throw py::type_error(std::string(name) + " is " + valueText(object) + "; expected two arrays");
   }
   const py::tuple pair = py::tuple(object);
+  if (pair.empty()) {
+    return {py::list(), py::list()};
+  }
   if (pair.size() != 2) {
     throw MeshError(std::string(name) + " has " + std::to_string(pair.size()) +
                     " entries; expected two arrays");

@@ -36,7 +36,8 @@ seed (0 to 2^64 - 1) gives the same locations on every machine and with any numb
 
 density is None; or (V,) weights of the vertices, bilinear on each Ptex face; or a function that takes
 (face, uv), arrays (n,) int32 and (n, 2) float64, and returns (n,) weights. Weights are relative, finite
-and at least 0; no location lies where the weight is 0. The function must not call set_positions(). The
+and at least 0; no location lies where the weight is 0. A function may be below 0 by rounding, by 1e-12
+of the largest weight that the same call of it returns. The function must not call set_positions(). The
 more its largest value exceeds its mean, the longer the call takes. progress is a function that is
 called from time to time with the part of the work that is done, 0 to 1; an exception that it raises
 ends the call.

@@ -725,6 +725,18 @@ LS: Any = ls
             f"seed is {2**64}; expected an integer below {2**64}",
         ),
         (
+            lambda: ANY_SURFACE.scatter_uniform(1, 10**5000),
+            f"seed is an integer of 16610 bits; expected an integer below {2**64}",
+        ),
+        (
+            lambda: ANY_SURFACE.closest([[0, 0, 0]], threads=-(10**5000)),
+            f"threads is an integer of 16610 bits; expected an integer of at least {-(2**31)}",
+        ),
+        (
+            lambda: ANY_SURFACE.closest([[0, 0, 0]], max_distance=10**5000),
+            "max_distance is an integer of 16610 bits; expected a number below 1.8e308",
+        ),
+        (
             lambda: ANY_SURFACE.scatter_uniform(1, -1),
             "seed is -1; expected an integer of at least 0",
         ),

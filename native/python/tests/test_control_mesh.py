@@ -259,7 +259,13 @@ def test_sharpness_of_zero_is_accepted():
         edge_sharpness=([[4, 1]], [0]),
         vertex_sharpness=([1], [0]),
     )
-    ls.ControlMesh(POSITIONS, SIZES, VERTICES, edge_sharpness=([], []), vertex_sharpness=([], []))
+
+
+@pytest.mark.parametrize("empty", [([], []), [], (), np.zeros((2, 0))])
+def test_no_sharpness_is_given(empty):
+    mesh = ls.ControlMesh(POSITIONS, SIZES, VERTICES, edge_sharpness=empty, vertex_sharpness=empty)
+    assert not len(mesh.edge_sharpness[0])
+    assert not len(mesh.vertex_sharpness[0])
 
 
 @pytest.mark.parametrize("holes", [[2], [-1], [2**40], [[0]]])

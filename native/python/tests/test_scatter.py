@@ -216,6 +216,27 @@ def test_limits_are_checked(cube, density, limits, message):
         cube.scatter_blue_noise(count=100, density=density, density_limits=limits)
 
 
+def test_interpolated_weights_round(cube):
+    sheet = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.grid(3, 3)))
+    weights = np.random.default_rng(3).random(16)
+    weights[np.random.default_rng(3).random(16) < 0.5] = 0
+    data = sheet.varying(weights)
+    lowest = []
+
+    def density(face, uv):
+        values = data.evaluate(face, uv).value[:, 0]
+        lowest.append(values.min())
+        return values
+
+    found = sheet.scatter_blue_noise(radius=0.1, density=density)
+    assert min(lowest) < 0  # or these weights test nothing
+    assert (data.evaluate(found.face, found.uv).value > 0).all()
+
+    cube.scatter_uniform(1000, density=lambda face, _uv: np.where(face > 0, 1.0, -1e-13))
+    with pytest.raises(ValueError, match="density is -1e-11 at face 0"):
+        cube.scatter_uniform(1000, density=lambda face, _uv: np.where(face > 0, 1.0, -1e-11))
+
+
 @pytest.mark.parametrize("count", [3, 5000])
 @pytest.mark.parametrize("limit", [1e12, 1e308])
 def test_limits_far_above_the_density(cube, count, limit):

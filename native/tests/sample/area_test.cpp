@@ -117,6 +117,30 @@ TEST(Area, FindsFoldsBetweenThePointsOfARule) {
   EXPECT_NEAR(measuredArea(surface).value, fine, 2e-7 * fine);
 }
 
+// Around one of the vertices the surface turns over within some levels, and back again in deeper
+// ones. Alone, each face has too few cores of a kind for an integral over whole cores
+// (coreNormal()).
+TEST(Area, FindsFoldsWithinCores) {
+  Cage cage = inTriangles(perturbed(grid(4, 4), 3, 66));
+  cage.positions.col(2).setZero();
+  const SurfaceArea whole = measuredArea(limitSurface(cage));
+  const int faces = static_cast<int>(cage.faces.size());
+  double sum = 0, error = whole.error;
+  for (int face = 0; face < faces; ++face) {
+    Cage alone = cage;
+    for (int other = 0; other < faces; ++other) {
+      if (other != face) {
+        alone.options.holes.push_back(other);
+      }
+    }
+    const SurfaceArea part = measuredArea(limitSurface(alone));
+    sum += part.value;
+    error += part.error;
+  }
+  EXPECT_LE(error, 1e-7 * sum);
+  EXPECT_NEAR(whole.value, sum, 3 * error);
+}
+
 TEST(Area, CostIsBoundedOnManyFoldedFaces) {
   const SurfaceArea area = measuredArea(limitSurface(folded(40, 40, 0.6, 3)));
   EXPECT_LE(area.evaluations, kMostRefined + 1600 * 300);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limitsurf/float_rounding.h"
+#include "limitsurf/gradual_resize.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
@@ -348,7 +349,8 @@ void SurfaceSearch::rayCast(const PointRows& origins, const PointRows& direction
   const double scale = data_->scale;
   checkRays(origins, directions, max_distance, scale, threads);
   const auto rows = static_cast<std::size_t>(origins.rows());
-  hits.at.assign(rows, {});
+  hits.at.clear();
+  resizeGradually(hits.at, rows);
   resizeRows(hits.distance, rows);
   hits.distance.setConstant(std::numeric_limits<double>::quiet_NaN());
   searchRays(*data_, origins, directions, max_distance, true, threads,

@@ -179,9 +179,9 @@ class SurfacePatches {
   /// Makes coreNormal() known for the kinds of cores that the surface has many of.
   void prepareCoreNormals();
   /// The integral of ds x dt over a whole core (steps = 0). Returns false if it is not known, or if
-  /// its direction differs by a large angle from that of the same integral over what many steps
-  /// leave of the core: where the surface turns over close to the vertex, this integral tells
-  /// nothing of the area.
+  /// the control points of some step show that the surface may turn over close to the vertex, where
+  /// this integral tells nothing of the area: if the quad of them at the vertex is turned over, or
+  /// if after many steps its direction still differs by a large angle from the integral's.
   bool coreNormal(const SurfacePiece& core, CoreNormal::Value& out) const;
 
   /// The limit position of the core's vertex.

@@ -90,12 +90,30 @@ bool SurfacePatches::coreNormal(const SurfacePiece& core, CoreNormal::Value& out
   const RingTile& tile = data_->ringTile(core);
   const Ring& ring = data_->table.rings[tile.ring].basis->ring();
   out = found->second.value(points);
-  const Padded* deep = data_->ringPoints(tile.ring, data_->keptSteps(tile.ring));
-  const auto along = [&](int edge) -> Vector3 {
-    return (data_->scale * (deep[edge] - deep[0])).head<3>().matrix();
+  const int corners[4] = {0, ring.edge(tile.face), ring.face(tile.face), ring.nextEdge(tile.face)};
+  // The normal of the quad of control points next to the vertex, at one of its corners.
+  const auto normalAt = [&](const Padded* level, int corner) -> Vector3 {
+    const auto along = [&](int other) -> Vector3 {
+      const Padded& end = level[corners[(corner + other) % 4]];
+      return (data_->scale * (end - level[corners[corner]])).head<3>().matrix();
+    };
+    return along(1).cross(along(3));
   };
-  const Vector3 left = along(ring.edge(tile.face)).cross(along(ring.nextEdge(tile.face)));
-  return out.normal.dot(left) >= kLeastCosine * out.normal.norm() * left.norm();
+  const int deepest = data_->keptSteps(tile.ring);
+  const Vector3 left = normalAt(data_->ringPoints(tile.ring, deepest), 0);
+  if (!(out.normal.dot(left) >= kLeastCosine * out.normal.norm() * left.norm())) {
+    return false;
+  }
+  // The surface may turn over and back again in between, as on a mesh that is folded in a plane.
+  for (int step = tile.ring_steps + core.steps; step < deepest; ++step) {
+    const Padded* level = data_->ringPoints(tile.ring, step);
+    for (int corner = 0; corner < 4; ++corner) {
+      if (!(out.normal.dot(normalAt(level, corner)) > 0)) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 int SurfacePatches::ringCount() const { return static_cast<int>(data_->table.rings.size()); }
