@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/eigen/large_ring.h"
 #include "limitsurf/eigen/mode_powers.h"
 
 namespace limitsurf {
@@ -180,6 +181,7 @@ class Eigenbasis::GridSum {
 
 void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& coefficients,
                              const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const {
+  passBeforeLongSum(ring_);
   GridSum(*this, face, steps, ring_steps, coefficients, outer_points, nullptr, grid).compute();
 }
 
@@ -187,6 +189,7 @@ void Eigenbasis::derivativeNets(int face, int steps, int ring_steps, const Point
                                 const Eigen::Array4d outer_points[],
                                 const derivative_nets::Selection& selection,
                                 Eigen::Array4d nets[]) const {
+  passBeforeLongSum(ring_);
   GridSum(*this, face, steps, ring_steps, coefficients, outer_points, &selection, nets).compute();
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/eigen/large_ring.h"
 #include "limitsurf/eigen/mode_powers.h"
 
 namespace limitsurf {
@@ -246,6 +247,7 @@ class Eigenbasis::WindowWeights {
 
 void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& window,
                          Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& outer_weights) const {
+  passBeforeLongSum(ring_);
   WindowWeights(*this, face, steps, ring_steps, window, mode_weights, outer_weights).compute();
 }
 

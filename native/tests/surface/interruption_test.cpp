@@ -190,6 +190,19 @@ TEST(Interruption, IsPossibleWithinAStrand) {
   EXPECT_GE(passesOf([&] { straightStrands(root, along, 1'000'000, 1); }), 15);
 }
 
+// At a vertex with thousands of faces a row takes milliseconds, and thousands of rows are one task.
+TEST(Interruption, IsHeardBetweenRowsNextToALargeVertex) {
+  constexpr int kFaces = 1200, kRows = 30;
+  const LimitSurface surface = limitSurface(pole(kFaces));
+  std::vector<Location> at;  // the first corners of the Ptex faces 0, 3, 6, ... are at the pole
+  for (int row = 0; row < kRows; ++row) {
+    at.push_back({3 * row, 1e-9, 2e-9});
+  }
+  EXPECT_GE(passesOf([&] { surface.evaluate(at, Derivatives::first, true, 1); }), kRows);
+  EXPECT_GE(passesOf([&] { surface.evaluate(at, Derivatives::second, true, 1); }), kRows);
+  EXPECT_GE(passesOf([&] { surface.frames(at, 1); }), kRows);
+}
+
 TEST(Interruption, OfAPoseIsToldAndHealedByTheNextPose) {
   LimitSurface surface = limitSurface(creasedGrid());
   const Points before = surface.positions(), after = (2 * before.array() + 1).matrix();
