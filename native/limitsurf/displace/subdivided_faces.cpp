@@ -10,7 +10,7 @@
 
 #include "limitsurf/displace/face_grid.h"
 #include "limitsurf/displace/subdivided_vertices.h"
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -194,7 +194,7 @@ std::vector<Location> SubdividedFaces::locate(const LocationBatch& at, int threa
     checkParameters(at[row], row);
   }
   std::vector<Location> result;
-  resizeGradually(result, at.size());
+  resizeInParts(result, at.size());
   parallelFor(at.size(), kLocationsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       result[row] = locate(at[row]);

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/sample/area_sampler_data.h"
 #include "limitsurf/sample/limited_cells.h"
 #include "limitsurf/sample/thinning.h"
@@ -24,7 +24,7 @@ constexpr std::size_t kSamplesPerReport = std::size_t{1} << 18;
 std::vector<Location> allAccepted(const UniformCandidates& candidates, std::size_t count,
                                   int threads, const Progress& progress) {
   std::vector<Location> result;
-  resizeGradually(result, count);
+  resizeInParts(result, count);
   for (std::size_t first = 0; first < count; first += kSamplesPerReport) {
     report(progress, first, count);
     candidates.findFirst(first, std::min(kSamplesPerReport, count - first), result.data() + first,

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "limitsurf/error.h"
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/random_bits.h"
 
@@ -53,7 +53,7 @@ std::vector<Location> scatterJittered(const LimitSurface& surface, Span<std::int
                                 std::to_string(kMostLocations) + " locations");
   }
   std::vector<Location> result;
-  resizeGradually(result, faces.size() * per_face);
+  resizeInParts(result, faces.size() * per_face);
   const std::uint64_t key = keyOf(seed);
   parallelFor(result.size(), kLocationsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -29,7 +29,7 @@ Thinning::Thinning(const UniformCandidates& candidates, const Density& density, 
       threads_(threads),
       progress_(progress),
       largest_(limits_.areKnown() ? 1 : 0) {
-  resizeGradually(samples_, count);
+  resizeInParts(samples_, count);
 }
 
 void Thinning::pilot(Span<Location> at) {
@@ -46,7 +46,7 @@ void Thinning::pilot(Span<Location> at) {
 
 std::vector<Location> Thinning::run() {
   std::vector<std::size_t> open;
-  resizeGradually(open, samples_.size());
+  resizeInParts(open, samples_.size());
   for (std::size_t i = 0; i < open.size(); ++i) {
     open[i] = i;
   }
@@ -67,7 +67,7 @@ std::vector<Location> Thinning::run() {
   }
   report(progress_, 1, 1);
   std::vector<Location> result;
-  resizeGradually(result, samples_.size());
+  resizeInParts(result, samples_.size());
   std::transform(samples_.begin(), samples_.end(), result.begin(),
                  [](const Sample& sample) { return sample.at; });
   return result;

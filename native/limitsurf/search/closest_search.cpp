@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "limitsurf/float_rounding.h"
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
@@ -206,7 +206,7 @@ class ClosestRows {
         least_cosine_(options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle)),
         at_(at) {
     at_.clear();
-    resizeGradually(at_, static_cast<std::size_t>(points.rows()));
+    resizeInParts(at_, static_cast<std::size_t>(points.rows()));
   }
 
   void run() {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -105,12 +105,12 @@ void TessellationNumbers::divide(int face, Divided& divided) const {
 }
 
 void TessellationNumbers::fill(Tessellation& result, int threads) const {
-  resizeGradually(result.locations, pointCount());
+  resizeInParts(result.locations, pointCount());
   for (std::vector<int>* values : {&result.face_sizes, &result.base_face, &result.ptex_face}) {
-    resizeGradually(*values, first_polygon_.back());
+    resizeInParts(*values, first_polygon_.back());
   }
-  resizeGradually(result.face_vertices, first_corner_.back());
-  resizeGradually(result.corners, first_corner_.back());
+  resizeInParts(result.face_vertices, first_corner_.back());
+  resizeInParts(result.corners, first_corner_.back());
   std::vector<int> number_of_slot(slot_count_, -1);
   parallelFor(faces_.size(), kFacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

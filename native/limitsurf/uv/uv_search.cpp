@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
@@ -59,7 +59,7 @@ UvSearch::UvSearch(const UvPatches& map, int threads)
 MapLocations UvSearch::locate(const PlanePoints& points, int threads) const {
   const auto rows = static_cast<std::size_t>(points.rows());
   MapLocations out;
-  resizeGradually(out.at, rows);
+  resizeInParts(out.at, rows);
   out.overlap.resize(rows);
   out.flipped.resize(rows);
   parallelFor(rows, kPointsPerTask, threads, [&](std::size_t begin, std::size_t end) {

@@ -9,8 +9,10 @@
 #include "limitsurf/eigen/eigenbasis.h"
 #include "limitsurf/flow/curve_directions.h"
 #include "limitsurf/geodesic/guide_weights.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/path/path_smoothing.h"
+#include "limitsurf/sample/jittered_sampling.h"
 #include "limitsurf/search/box_tree.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
@@ -188,6 +190,33 @@ TEST(Interruption, IsPossibleBetweenPointsOfAPath) {
 TEST(Interruption, IsPossibleWithinAStrand) {
   const Points root = Points::Zero(1, 3), along = Points::Ones(1, 3);
   EXPECT_GE(passesOf([&] { straightStrands(root, along, 1'000'000, 1); }), 15);
+}
+
+// Memory for gigabytes takes seconds: it comes in parts of 8 MiB at most.
+TEST(Interruption, IsHeardWhileAVectorTakesMemory) {
+  constexpr std::size_t kPart = std::size_t{8} << 20;  // bytes
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{3'000'000}}) {
+    std::vector<Location> places;
+    const long passes = passesOf([&] { resizeInParts(places, count); });
+    EXPECT_GE(passes, static_cast<long>(count * sizeof(Location) / kPart));
+    ASSERT_EQ(places.size(), count);
+    EXPECT_EQ(places.capacity(), count);
+    for (const Location& place : places) {
+      ASSERT_TRUE(place.face == -1 && place.u == 0 && place.v == 0);
+    }
+  }
+  std::vector<int> numbers = {3, 4};
+  resizeInParts(numbers, 4);
+  EXPECT_EQ(numbers, (std::vector<int>{3, 4, 0, 0}));
+
+  const LimitSurface surface = limitSurface(fullGrid(1, 1));
+  constexpr std::size_t kSide = 2048, kPlaces = kSide * kSide;
+  std::vector<Location> places;
+  const long passes =
+      passesOf([&] { places = scatterJittered(surface, static_cast<int>(kSide), 0, 1); });
+  ASSERT_EQ(places.size(), kPlaces);
+  constexpr std::size_t kTasks = kPlaces / 8192;  // each passes as well
+  EXPECT_GE(passes, static_cast<long>(kTasks + kPlaces * sizeof(Location) / kPart));
 }
 
 // At a vertex with thousands of faces a row takes milliseconds, and thousands of rows are one task.

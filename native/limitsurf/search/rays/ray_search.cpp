@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "limitsurf/float_rounding.h"
-#include "limitsurf/gradual_resize.h"
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
@@ -350,7 +350,7 @@ void SurfaceSearch::rayCast(const PointRows& origins, const PointRows& direction
   checkRays(origins, directions, max_distance, scale, threads);
   const auto rows = static_cast<std::size_t>(origins.rows());
   hits.at.clear();
-  resizeGradually(hits.at, rows);
+  resizeInParts(hits.at, rows);
   resizeRows(hits.distance, rows);
   hits.distance.setConstant(std::numeric_limits<double>::quiet_NaN());
   searchRays(*data_, origins, directions, max_distance, true, threads,
