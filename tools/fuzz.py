@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the fuzzers of native/fuzz/ (with Clang 19) and runs them from the inputs of its corpus.
 
-    tools/fuzz.py [--seconds 20] [--target mesh | query | map] [--keep]
+    tools/fuzz.py [--seconds 15] [--target mesh | query | map | pickle] [--keep]
 
 Each fuzzer runs for --seconds on each of the machine's cores. A finding ends the program with an
 error and with the input's digits: append them to native/fuzz/corpus/TARGET.hex, below a line
@@ -20,8 +20,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "fuzz"
+PACKAGE = BUILD / "package"
+PYTHON = ROOT / ".venv" / "bin" / "python"
+# What the fuzzer of the Python module imports.
+PYTHONPATH = (PACKAGE, ROOT / "native" / "fuzz", ROOT / "native" / "python" / "tests")
 CORPUS = ROOT / "native" / "fuzz" / "corpus"
-TARGETS = ("mesh", "query", "map")
+TARGETS = ("mesh", "query", "map", "pickle")
 LONGEST_INPUT = 512  # bytes
 # An input that takes longer is a finding. The slowest of the corpus takes 5 s of a processor, but
 # the clock goes on while other programs have it.
@@ -32,10 +36,26 @@ CANNOT_RUN = 77
 
 
 def build() -> None:
+    def run(*command: object) -> None:
+        subprocess.run([*map(str, command)], cwd=ROOT, check=True, stdout=sys.stderr)
+
     if not (BUILD / "build.ninja").exists():
-        subprocess.run(["cmake", "--preset", "fuzz"], cwd=ROOT, check=True, stdout=sys.stderr)
-    names = [f"limitsurf_fuzz_{target}" for target in TARGETS]
-    subprocess.run(["cmake", "--build", BUILD, "--target", *names], check=True, stdout=sys.stderr)
+        pybind11 = subprocess.run(
+            [PYTHON, "-m", "pybind11", "--cmakedir"], check=True, stdout=subprocess.PIPE, text=True
+        ).stdout.strip()
+        run(
+            "cmake", "--preset", "fuzz",
+            "-D", f"Python_EXECUTABLE={PYTHON}", "-D", f"pybind11_DIR={pybind11}",
+        )  # fmt: skip
+    run("cmake", "--build", BUILD, "--target", "_limitsurf", *map(program, TARGETS))
+    # The module that is fuzzed, as a package of its own.
+    run("cmake", "--install", BUILD, "--component", "python", "--prefix", PACKAGE)
+    for path in (ROOT / "native" / "python" / "limitsurf").glob("*.py"):
+        shutil.copy(path, PACKAGE / "limitsurf")
+
+
+def program(target: str) -> str:
+    return f"limitsurf_fuzz_{target}"
 
 
 def corpus_lines(target: str) -> list[str]:
@@ -71,9 +91,16 @@ def pack(target: str, folder: Path) -> None:
 
 def start(target: str, options: list) -> subprocess.Popen:
     return subprocess.Popen(
-        [BUILD / "native" / "fuzz" / f"limitsurf_fuzz_{target}", *options],
+        [BUILD / "native" / "fuzz" / program(target), *options],
         cwd=BUILD,
-        env=dict(os.environ, UBSAN_OPTIONS="print_stacktrace=1"),
+        env=dict(
+            os.environ,
+            UBSAN_OPTIONS="print_stacktrace=1",
+            # Python does not free all of its objects at the end.
+            ASAN_OPTIONS=f"detect_leaks={int(target != 'pickle')}",
+            PYTHONPATH=os.pathsep.join(map(str, PYTHONPATH)),
+            PYTHONDONTWRITEBYTECODE="1",
+        ),
         text=True,
         errors="replace",
         stdout=subprocess.DEVNULL,
@@ -120,7 +147,7 @@ def fuzz(target: str, seconds: int, seed: int, keep: bool) -> bool:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--seconds", type=int, default=20, help="for each fuzzer, on each core")
+    parser.add_argument("--seconds", type=int, default=15, help="for each fuzzer, on each core")
     parser.add_argument("--target", choices=TARGETS, help="only this fuzzer")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", action="store_true", help="take new inputs into the corpus")
@@ -128,6 +155,8 @@ def main() -> int:
     if not shutil.which(COMPILER):
         print(f"Fuzzers: not run, since there is no {COMPILER} here (Debian: clang-19).")
         return CANNOT_RUN
+    if not PYTHON.exists():
+        sys.exit("The fuzzers need the environment .venv: run tools/setup.sh first.")
     build()
     results = [
         fuzz(target, options.seconds, options.seed, options.keep)

@@ -11,9 +11,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 TEXTS = ("CHANGELOG.md", "CMakeLists.txt", "LICENSE", "PKG-INFO", "README.md", "pyproject.toml")
-FOLDERS = ("LICENSES/", "native/cmake/", "native/limitsurf/", "native/python/")
+FOLDERS = ("LICENSES/", "native/cmake/", "native/fuzz/", "native/limitsurf/", "native/python/")
 #: Ends of the names of the files that the folders hold
-ENDS = (".cmake", ".cpp", ".h", ".in", ".map", ".md", ".py", ".pyi", ".txt", "py.typed")
+ENDS = (".cmake", ".cpp", ".h", ".hex", ".in", ".map", ".md", ".py", ".pyi", ".txt", "py.typed")
 
 
 @pytest.fixture(scope="module")

@@ -71,7 +71,8 @@ PyObject* shortWithTuple(PyObject* self, PyObject* arguments, PyObject* named) {
                     named == nullptr ? py::dict() : py::reinterpret_borrow<py::dict>(named));
 }
 
-using FastFunction = PyObject* (*)(PyObject*, PyObject* const*, Py_ssize_t, PyObject*);
+/// pybind11's dispatcher, which takes an unsigned count where CPython passes a signed one.
+using FastFunction = PyObject* (*)(PyObject*, PyObject* const*, std::size_t, PyObject*);
 
 template <bool makes>
 PyObject* shortWithArray(PyObject* self, PyObject* const* arguments, Py_ssize_t count,
@@ -81,7 +82,7 @@ PyObject* shortWithArray(PyObject* self, PyObject* const* arguments, Py_ssize_t 
     return refuseMade(arguments[0]);
   }
   const auto call = reinterpret_cast<FastFunction>(reinterpret_cast<void (*)()>(dispatcher));
-  PyObject* const result = call(self, arguments, count, names);
+  PyObject* const result = call(self, arguments, static_cast<std::size_t>(count), names);
   if (result != nullptr || PyErr_ExceptionMatches(PyExc_TypeError) == 0) {
     return result;
   }

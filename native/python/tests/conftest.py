@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
+import sys
+from pathlib import Path
+
 import limitsurf as ls
 import numpy as np
 import pytest
 import shapes
+
+# The fuzzers' target of pickles.
+sys.path.append(str(Path(__file__).resolve().parents[2] / "fuzz"))
 
 
 @pytest.fixture(params=sorted(shapes.ALL))
