@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/path/surface_distance.h"
@@ -113,14 +114,18 @@ PathPoints evenPath(const LimitSurface& surface, const SurfaceSearch& search,
     const double t = step > 0 ? std::clamp((at - length[row - 1]) / step, 0., 1.) : 0;
     wanted.push_back((1 - t) * position.row(row - 1) + t * position.row(row));
   }
-  const Hits hits = feet(search, wanted, threads);
+  Hits hits = feet(search, wanted, threads);
   PathPoints even;
+  even.at.reserve(static_cast<std::size_t>(count));
   even.at.push_back(path.front());
-  even.at.insert(even.at.end(), hits.at.begin(), hits.at.end());
+  moveInParts(hits.at, even.at);
   even.at.push_back(path.back());
   even.position.resize(count, 3);
   even.position.row(0) = position.row(0);
-  even.position.middleRows(1, count - 2) = hits.position;
+  for (Eigen::Index row = 1; row + 1 < count; ++row) {
+    stride.step();
+    even.position.row(row) = hits.position.row(row - 1);
+  }
   even.position.row(count - 1) = position.row(position.rows() - 1);
   return even;
 }
