@@ -47,6 +47,13 @@ std::string inOneLine(std::string_view text, std::size_t most) {
   return line;
 }
 
+/// Whether a value is a number or a truth value of numpy, as the elements of arrays are. numpy 2
+/// represents them as calls, np.False_ or np.float64(1.5), which nobody wrote who made an array.
+bool isElement(const py::handle& value) {
+  const py::module_ numpy = py::module_::import("numpy");
+  return py::isinstance(value, numpy.attr("number")) || py::isinstance(value, numpy.attr("bool_"));
+}
+
 }  // namespace
 
 std::string shortened(const std::string& text) {
@@ -68,7 +75,7 @@ std::string valueText(const py::handle& value) {
     return "an integer of " + py::cast<std::string>(py::str(value.attr("bit_length")())) + " bits";
   }
   try {
-    return shortened(py::cast<Text>(py::repr(value)));
+    return shortened(py::cast<Text>(isElement(value) ? py::str(value) : py::repr(value)));
   } catch (py::error_already_set& error) {
     if (!error.matches(PyExc_Exception)) {
       throw;

@@ -13,7 +13,7 @@ namespace limitsurf::python {
 std::string shortened(const std::string& text);
 
 /// A value for a message, as Python writes it, or its class if that raises. Integers of thousands
-/// of digits cannot be written.
+/// of digits cannot be written. Numbers of numpy are written as Python's.
 std::string valueText(const pybind11::handle& value);
 
 }  // namespace limitsurf::python
