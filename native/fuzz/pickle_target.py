@@ -107,7 +107,7 @@ def changed(read: ByteReader, array: Any) -> Any:
         change = read.below(9)
         if change < 3 and array.size and array.dtype.kind in "fiu":
             value = np.array(read.real() if change else read.integer(), float)
-            array.reshape(-1)[read.byte() % array.size] = value.astype(array.dtype)
+            array.flat[read.byte() % array.size] = value.astype(array.dtype)
         elif change == 3:
             array = converted(array, read.one_of(DTYPES))
         elif change == 4:

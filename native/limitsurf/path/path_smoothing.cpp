@@ -102,8 +102,7 @@ PathPoints evenPath(const LimitSurface& surface, const SurfaceSearch& search,
   for (const double step : lengths(position)) {
     length.push_back(length.back() + step);
   }
-  std::vector<Vector3> wanted;
-  wanted.reserve(static_cast<std::size_t>(count));
+  Points wanted(count - 2, 3);
   InterruptionStride stride;
   for (int i = 1; i + 1 < count; ++i) {
     stride.step();
@@ -112,7 +111,7 @@ PathPoints evenPath(const LimitSurface& surface, const SurfaceSearch& search,
     const auto row = static_cast<Eigen::Index>(next - length.begin());
     const double step = length[row] - length[row - 1];
     const double t = step > 0 ? std::clamp((at - length[row - 1]) / step, 0., 1.) : 0;
-    wanted.push_back((1 - t) * position.row(row - 1) + t * position.row(row));
+    wanted.row(i - 1) = (1 - t) * position.row(row - 1) + t * position.row(row);
   }
   Hits hits = feet(search, wanted, threads);
   PathPoints even;

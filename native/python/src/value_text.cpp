@@ -47,11 +47,10 @@ std::string inOneLine(std::string_view text, std::size_t most) {
   return line;
 }
 
-/// Whether a value is a number or a truth value of numpy, as the elements of arrays are. numpy 2
+/// Whether a value is a truth value or a number of numpy, as the elements of arrays are. numpy 2
 /// represents them as calls, np.False_ or np.float64(1.5), which nobody wrote who made an array.
 bool isElement(const py::handle& value) {
-  const py::module_ numpy = py::module_::import("numpy");
-  return py::isinstance(value, numpy.attr("number")) || py::isinstance(value, numpy.attr("bool_"));
+  return isBool(value) || py::isinstance(value, py::module_::import("numpy").attr("number"));
 }
 
 }  // namespace
